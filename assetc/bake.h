@@ -1,0 +1,29 @@
+// Baking of visibility by line-space rasterisation: per direction of an antipodal set, the mesh is rasterised once
+// orthographically, keeping the nearest and farthest depth of every line; a sample p is blocked along w if the farthest
+// depth on its line lies beyond p.w, and along -w if the nearest lies before it. One raster serves every sample of every
+// shell, inside the bounding sphere too, and every vertex. Deterministic for any thread count.
+#pragma once
+
+#include "assets/mesh_asset.h"
+#include "assetc/progress.h"
+
+namespace penumbra {
+
+struct BakeOptions {
+    std::uint32_t shells = 32;
+    std::uint32_t side = 65;         // 2^k + 1
+    std::uint32_t directions = 1024; // even
+    std::uint32_t rasterSide = 512;  // pixels across the bounding sphere
+    bool field = true;
+};
+
+struct BakeResult {
+    std::vector<SelfVisibility> selfVisibility; // [vertexCount]
+    ShadowField field;
+};
+
+// `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid. Uses the TBB arena of the caller.
+BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
+                    const std::vector<std::uint32_t>& indices, const BakeOptions& options, Progress& progress);
+
+} // namespace penumbra

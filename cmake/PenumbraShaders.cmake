@@ -1,0 +1,1 @@
+# shader rule: see runtime/vk

@@ -1,0 +1,98 @@
+#include "runtime/file.h"
+
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace penumbra {
+
+namespace {
+
+struct Descriptor {
+    int fd = -1;
+    ~Descriptor()
+    {
+        if (fd >= 0)
+            ::close(fd);
+    }
+};
+
+Error systemError(const std::filesystem::path& path, const char* what)
+{
+    return {fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno))};
+}
+
+} // namespace
+
+Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes)
+{
+    // O_NONBLOCK: opening a FIFO must not hang; it has no effect on regular files.
+    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    if (file.fd < 0)
+        return systemError(path, "cannot open");
+    struct stat status {};
+    if (::fstat(file.fd, &status) != 0)
+        return systemError(path, "cannot stat");
+    if (!S_ISREG(status.st_mode))
+        return Error{path.string() + ": not a regular file"};
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (size > maxBytes)
+        return Error{fmt::format("{}: {} bytes, larger than the limit of {} bytes", path.string(), size, maxBytes)};
+
+    std::vector<std::byte> bytes(size);
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t got = ::read(file.fd, bytes.data() + done, bytes.size() - done);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return systemError(path, "cannot read");
+        if (got == 0)
+            return Error{path.string() + ": shrank while it was read"};
+        done += static_cast<std::size_t>(got);
+    }
+    return bytes;
+}
+
+Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes)
+{
+    std::error_code ec;
+    if (path.has_parent_path())
+        std::filesystem::create_directories(path.parent_path(), ec);
+    if (ec)
+        return Error{fmt::format("{}: cannot create the folder: {}", path.parent_path().string(), ec.message())};
+
+    std::string temporary = path.string() + ".XXXXXX";
+    Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
+    if (file.fd < 0)
+        return systemError(path, "cannot create a file beside");
+    ::fchmod(file.fd, 0644);
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t put = ::write(file.fd, bytes.data() + done, bytes.size() - done);
+        if (put < 0 && errno == EINTR)
+            continue;
+        if (put < 0) {
+            const Error error = systemError(path, "cannot write");
+            ::unlink(temporary.c_str());
+            return error;
+        }
+        done += static_cast<std::size_t>(put);
+    }
+    const int closed = ::close(std::exchange(file.fd, -1));
+    if (closed != 0 || ::rename(temporary.c_str(), path.c_str()) != 0) {
+        const Error error = systemError(path, "cannot replace");
+        ::unlink(temporary.c_str());
+        return error;
+    }
+    return {};
+}
+
+Result<void> writeFile(const std::filesystem::path& path, const std::string& text)
+{
+    return writeFile(path, std::as_bytes(std::span(text)));
+}
+
+} // namespace penumbra
