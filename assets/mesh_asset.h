@@ -1,5 +1,6 @@
-// A compiled mesh asset in memory: receivers (vertices with self-visibility, in clusters of 64), triangles, material and
-// the occlusion field that all instances share. On disk it is a .glb, see assets/mesh_codec.h and docs/asset_format.md.
+// A compiled mesh asset in memory: receivers (vertices with self-visibility, in clusters of 64),
+// triangles, material and the occlusion field that all instances share. On disk it is a .glb, see
+// assets/mesh_codec.h and docs/asset_format.md.
 #pragma once
 
 #include "assets/shadow_field.h"
@@ -13,26 +14,28 @@ namespace penumbra {
 
 PENUMBRA_CONST std::uint32_t kClusterVertices = 64;
 
-// Self-visibility of one vertex: visibility in SH of order 4, object space; directions below the vertex's own tangent
-// plane count as visible, since the cosine removes them and the function stays smooth without the step.
+// Self-visibility of one vertex: visibility in SH of order 4, object space; directions below the
+// vertex's own tangent plane count as visible, since the cosine removes them and the function stays
+// smooth without the step.
 //     c_i = unoccluded_i + kSelfVisibilityScale * (q_i - 128)
 // An open vertex is (128, 128, …).
 using SelfVisibility = std::array<std::uint8_t, 16>;
-PENUMBRA_CONST float kSelfVisibilityScale = 3.5449077f / 127.0f;
+PENUMBRA_CONST float kSelfVisibilityScale =
+    1.78f / 127.0f; // a blocked hemisphere has |c_0| = sqrt(pi) = 1.7725
 
-// 64 consecutive vertices (fewer in the last cluster). Bounds cover every triangle that touches one of them, so that a
-// cluster is dropped only when none of its triangles can be seen.
+// 64 consecutive vertices (fewer in the last cluster). Bounds cover every triangle that touches one
+// of them, so that a cluster is dropped only when none of its triangles can be seen.
 struct MeshCluster {
-    vec3 center{0};     // object space, metres
+    vec3 center{0}; // object space, metres
     float radius = 0;
-    vec3 coneAxis{0};   // the mean of the face normals
+    vec3 coneAxis{0};      // the mean of the face normals
     float coneCutoff = -1; // cosine of the largest angle between axis and face normal; -1: no cone
 };
 
 struct MeshMaterial {
-    vec3 albedo{0.8f};        // linear Rec. 709
-    float glossFraction = 0;  // part of the reflectance in the Phong lobe, 0 = Lambert
-    float glossExponent = 0;  // normalised Phong exponent
+    vec3 albedo{0.8f};       // linear Rec. 709
+    float glossFraction = 0; // part of the reflectance in the Phong lobe, 0 = Lambert
+    float glossExponent = 0; // normalised Phong exponent
 };
 
 struct MeshAsset {
@@ -50,8 +53,20 @@ struct MeshAsset {
 
 PENUMBRA_CONST std::uint32_t kMaxMeshVertices = 4u << 20;
 PENUMBRA_CONST std::uint32_t kMaxMeshTriangles = 8u << 20;
+PENUMBRA_CONST std::uint32_t kMaxNameBytes = 256;
+PENUMBRA_CONST float kMaxGlossExponent = 1e5f;
 
-// Bounds of the clusters for positions and indices as they stand.
-std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions, const std::vector<std::uint32_t>& indices);
+// Bounds of the clusters for positions and indices as they stand. Indices must be below
+// positions.size(). A cluster whose triangles face all ways, or that has none, gets no cone.
+std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
+                                       const std::vector<std::uint32_t>& indices);
+
+// Sets clusters and bounds from positions and indices.
+void updateDerived(MeshAsset& mesh);
+
+// Every invariant above but clusters and bounds, on untrusted values: sizes that agree and keep the
+// limits, indices in range, finite positions within kMaxCoordinate, unit normals, a physical
+// material, a valid field.
+Result<void> validateMesh(const MeshAsset& mesh);
 
 } // namespace penumbra

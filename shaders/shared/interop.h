@@ -2,9 +2,8 @@
 //   PENUMBRA_FN         marks a function that both languages call
 //   PENUMBRA_CONST      a compile-time constant
 //   PENUMBRA_BEGIN/END  the namespace in C++, nothing in GLSL
-//   PENUMBRA_BUFFER(Name, Element)  a read-only array behind a device address: `Name b; b.v[i]`
-//   usamplerBuffer, samplerBuffer   texel buffers: `texelFetch(b, i)`
-// Shared functions take and return small structs by value, so that no other macro is needed.
+// Shared functions take and return small structs by value, so that no other macro is needed; what a shader reads from
+// buffers is passed in by the entry point, so that the maths knows no binding.
 #ifndef PENUMBRA_SHADERS_SHARED_INTEROP_H
 #define PENUMBRA_SHADERS_SHARED_INTEROP_H
 #ifdef __cplusplus
@@ -19,10 +18,6 @@
 #define PENUMBRA_CONST constexpr
 #define PENUMBRA_BEGIN namespace penumbra {
 #define PENUMBRA_END }
-#define PENUMBRA_BUFFER(Name, Element)                                                             \
-    struct Name {                                                                                  \
-        const Element* v = nullptr;                                                                \
-    };
 
 namespace penumbra {
 using glm::ivec2, glm::ivec3, glm::ivec4, glm::uvec2, glm::uvec3, glm::uvec4;
@@ -32,14 +27,6 @@ using glm::clamp, glm::cross, glm::dot, glm::inversesqrt, glm::length, glm::max,
     glm::normalize;
 using uint = std::uint32_t;
 
-struct usamplerBuffer {
-    const uvec4* texels = nullptr;
-};
-struct samplerBuffer {
-    const vec4* texels = nullptr;
-};
-inline uvec4 texelFetch(usamplerBuffer buffer, int texel) { return buffer.texels[texel]; }
-inline vec4 texelFetch(samplerBuffer buffer, int texel) { return buffer.texels[texel]; }
 inline uint floatBitsToUint(float value) { return glm::floatBitsToUint(value); }
 inline float uintBitsToFloat(uint bits) { return glm::uintBitsToFloat(bits); }
 } // namespace penumbra
@@ -54,8 +41,6 @@ inline float uintBitsToFloat(uint bits) { return glm::uintBitsToFloat(bits); }
 #define PENUMBRA_CONST const
 #define PENUMBRA_BEGIN
 #define PENUMBRA_END
-#define PENUMBRA_BUFFER(Name, Element)                                                             \
-    layout(buffer_reference, scalar) readonly buffer Name { Element v[]; };
 
 #endif
 #endif

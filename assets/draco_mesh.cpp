@@ -1,0 +1,198 @@
+#include "assets/draco_mesh.h"
+
+#include <array>
+#include <cstring>
+#include <draco/compression/decode.h>
+#include <draco/compression/expert_encode.h>
+#include <draco/mesh/mesh.h>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::array<std::uint8_t, 7> kTriangleMesh22 = {'D', 'R', 'A', 'C', 'O', 2, 2};
+
+// LEB128, as draco/core/varint_decoding.h; false where the bytes end.
+bool readVarint(std::span<const std::byte>& bytes, std::uint64_t& value)
+{
+    value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+        if (bytes.empty())
+            return false;
+        const auto byte = std::to_integer<std::uint64_t>(bytes.front());
+        bytes = bytes.subspan(1);
+        value |= (byte & 0x7f) << shift;
+        if ((byte & 0x80) == 0)
+            return true;
+    }
+    return false;
+}
+
+// Header: "DRACO", major, minor, geometry type (1 = triangles), method (0 sequential, 1
+// edgebreaker), flags[2]; then, unless metadata comes between: sequential: triangles, vertices;
+// edgebreaker: traversal[1], vertices, triangles.
+Result<void> checkHeader(std::span<const std::byte> bytes)
+{
+    constexpr std::size_t kHeaderBytes = kTriangleMesh22.size() + 4;
+    if (bytes.size() < kHeaderBytes || std::memcmp(bytes.data(), "DRACO", 5) != 0)
+        return Error{"not a Draco payload"};
+    if (std::memcmp(bytes.data(), kTriangleMesh22.data(), kTriangleMesh22.size()) != 0)
+        return Error{"a Draco bitstream other than 2.2; re-export with a current exporter"};
+    const auto type = std::to_integer<int>(bytes[7]);
+    const auto method = std::to_integer<int>(bytes[8]);
+    if (type != 1 || method > 1)
+        return Error{"Draco geometry that is not a triangle mesh"};
+    if ((std::to_integer<int>(bytes[10]) & 0x80) != 0)
+        return Error{"Draco metadata, which glTF does not use; re-export without it"};
+
+    auto rest = bytes.subspan(kHeaderBytes);
+    if (method == 1)
+        rest = rest.subspan(std::min<std::size_t>(1, rest.size()));
+    std::uint64_t first = 0;
+    std::uint64_t second = 0;
+    if (!readVarint(rest, first) || !readVarint(rest, second))
+        return Error{"Draco payload cut off"};
+    const std::uint64_t triangles = method == 0 ? first : second;
+    const std::uint64_t vertices = method == 0 ? second : first;
+    if (triangles > kMaxMeshTriangles || vertices > kMaxMeshVertices)
+        return Error{
+            fmt::format("Draco mesh of {} vertices and {} triangles, above the limits of {} and {}",
+                        vertices, triangles, kMaxMeshVertices, kMaxMeshTriangles)};
+    return {};
+}
+
+template <class T>
+int addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType dataType,
+                 int components, bool normalized, std::size_t count, const T& valueOf)
+{
+    draco::GeometryAttribute attribute;
+    const std::int64_t stride = components * draco::DataTypeLength(dataType);
+    attribute.Init(type, nullptr, static_cast<std::uint8_t>(components), dataType, normalized,
+                   stride, 0);
+    const int id = mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(count));
+    for (std::uint32_t i = 0; i < count; ++i)
+        mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), valueOf(i));
+    return id;
+}
+
+template <class T>
+Result<std::vector<T>> readAttribute(const draco::Mesh& mesh, std::uint32_t id, int components)
+{
+    const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(id);
+    if (!attribute)
+        return Error{fmt::format("Draco payload has no attribute {}", id)};
+    if (attribute->num_components() != components)
+        return Error{fmt::format("Draco attribute {} has {} components, expected {}", id,
+                                 static_cast<int>(attribute->num_components()), components)};
+    const auto width = static_cast<std::size_t>(components);
+    std::vector<T> values(mesh.num_points() * width);
+    for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
+        const draco::AttributeValueIndex entry = attribute->mapped_index(p);
+        if (entry.value() >= attribute->size() ||
+            !attribute->ConvertValue<T>(entry, static_cast<std::int8_t>(components),
+                                        &values[p.value() * width]))
+            return Error{fmt::format("Draco attribute {} does not cover vertex {}", id, p.value())};
+    }
+    return values;
+}
+
+} // namespace
+
+Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEncodeOptions& options)
+{
+    const std::size_t vertexCount = mesh.positions.size();
+    PENUMBRA_ASSERT(mesh.normals.size() == vertexCount && mesh.selfVisibility.size() == vertexCount,
+                    "{} positions, {} normals, {} self-visibilities", vertexCount,
+                    mesh.normals.size(), mesh.selfVisibility.size());
+
+    draco::Mesh target;
+    target.set_num_points(static_cast<std::uint32_t>(vertexCount));
+    target.SetNumFaces(mesh.indices.size() / 3);
+    for (std::uint32_t f = 0; f < mesh.indices.size() / 3; ++f)
+        target.SetFace(draco::FaceIndex(f), {draco::PointIndex(mesh.indices[3 * f]),
+                                             draco::PointIndex(mesh.indices[3 * f + 1]),
+                                             draco::PointIndex(mesh.indices[3 * f + 2])});
+
+    using Attribute = draco::GeometryAttribute;
+    const int position =
+        addAttribute(target, Attribute::POSITION, draco::DT_FLOAT32, 3, false, vertexCount,
+                     [&](std::uint32_t i) { return &mesh.positions[i]; });
+    const int normal = addAttribute(target, Attribute::NORMAL, draco::DT_FLOAT32, 3, false,
+                                    vertexCount, [&](std::uint32_t i) { return &mesh.normals[i]; });
+    for (std::uint32_t part = 0; part < 4; ++part)
+        addAttribute(target, Attribute::GENERIC, draco::DT_UINT8, 4, true, vertexCount,
+                     [&](std::uint32_t i) { return &mesh.selfVisibility[i][4 * part]; });
+
+    draco::ExpertEncoder encoder(target);
+    encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);     // edgebreaker reorders vertices
+    encoder.options().SetGlobalBool("compress_connectivity", true); // 30 % of the payload
+    encoder.SetAttributeQuantization(position, options.positionBits);
+    encoder.SetAttributeQuantization(normal, options.normalBits);
+    draco::EncoderBuffer buffer;
+    const draco::Status status = encoder.EncodeToBuffer(&buffer);
+    if (!status.ok())
+        return Error{"Draco cannot encode the mesh: " + status.error_msg_string()};
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer.data());
+    return std::vector<std::byte>(begin, begin + buffer.size());
+}
+
+Result<DracoMesh> DracoMesh::decode(std::span<const std::byte> bytes)
+{
+    if (const Result<void> header = checkHeader(bytes); !header)
+        return header.error();
+    try {
+        draco::DecoderBuffer buffer;
+        buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        draco::Decoder decoder;
+        auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+        if (!decoded.ok())
+            return Error{"Draco: " + decoded.status().error_msg_string()};
+        std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+        // Edgebreaker may add vertices at seams after the header's count.
+        if (mesh->num_points() > kMaxMeshVertices || mesh->num_faces() > kMaxMeshTriangles)
+            return Error{fmt::format("Draco mesh of {} vertices, above the limit of {}",
+                                     mesh->num_points(), kMaxMeshVertices)};
+        for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)
+            for (const draco::PointIndex& corner : mesh->face(f))
+                if (corner.value() >= mesh->num_points())
+                    return Error{fmt::format("Draco triangle {} uses vertex {} of {}", f.value(),
+                                             corner.value(), mesh->num_points())};
+        return DracoMesh(std::move(mesh));
+    } catch (const std::exception& exception) {
+        return Error{fmt::format("Draco: {}", exception.what())};
+    }
+}
+
+DracoMesh::DracoMesh(std::unique_ptr<draco::Mesh> mesh) : m_mesh(std::move(mesh)) {}
+DracoMesh::DracoMesh(DracoMesh&&) noexcept = default;
+DracoMesh::~DracoMesh() = default;
+
+std::uint32_t DracoMesh::vertexCount() const
+{
+    return m_mesh->num_points();
+}
+
+std::vector<std::uint32_t> DracoMesh::indices() const
+{
+    std::vector<std::uint32_t> indices;
+    indices.reserve(std::size_t{3} * m_mesh->num_faces());
+    for (draco::FaceIndex f(0); f < m_mesh->num_faces(); ++f)
+        for (const draco::PointIndex& corner : m_mesh->face(f))
+            indices.push_back(corner.value());
+    return indices;
+}
+
+Result<std::vector<float>> DracoMesh::floats(std::uint32_t id, int components) const
+{
+    return readAttribute<float>(*m_mesh, id, components);
+}
+
+Result<std::vector<std::uint8_t>> DracoMesh::bytes(std::uint32_t id, int components) const
+{
+    const draco::PointAttribute* attribute = m_mesh->GetAttributeByUniqueId(id);
+    if (attribute && attribute->data_type() != draco::DT_UINT8)
+        return Error{fmt::format("Draco attribute {} is not of unsigned bytes", id)};
+    return readAttribute<std::uint8_t>(*m_mesh, id, components);
+}
+
+} // namespace penumbra

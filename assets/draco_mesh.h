@@ -1,0 +1,45 @@
+// Draco payloads, as KHR_draco_mesh_compression stores them. The counts in the payload's header are
+// read and bounded before libdraco runs, since it allocates from them.
+#pragma once
+
+#include "assets/mesh_codec.h"
+
+#include <memory>
+
+namespace draco {
+class Mesh;
+}
+
+namespace penumbra {
+
+// Attribute ids that encodeDraco writes.
+enum DracoAttribute : std::uint32_t { kDracoPosition, kDracoNormal, kDracoSelfVisibility0 };
+
+// Positions, normals and self-visibility of `mesh` (all three [vertexCount]) with the sequential
+// method, which keeps the order of vertices and triangles. Deterministic.
+Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEncodeOptions& options);
+
+class DracoMesh {
+public:
+    // A triangle mesh of bitstream 2.2, by any method, of at most kMaxMeshVertices and
+    // kMaxMeshTriangles.
+    static Result<DracoMesh> decode(std::span<const std::byte> bytes);
+    DracoMesh(DracoMesh&&) noexcept;
+    ~DracoMesh();
+
+    [[nodiscard]] std::uint32_t vertexCount() const;
+    [[nodiscard]] std::vector<std::uint32_t>
+    indices() const; // [3 * triangleCount], each < vertexCount
+
+    // An attribute by its unique id: [vertexCount][components]. Floats convert integers and apply
+    // `normalized`. A missing attribute, or one with another number of components, is an Error.
+    [[nodiscard]] Result<std::vector<float>> floats(std::uint32_t id, int components) const;
+    [[nodiscard]] Result<std::vector<std::uint8_t>> bytes(std::uint32_t id, int components) const;
+
+private:
+    explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);
+
+    std::unique_ptr<draco::Mesh> m_mesh;
+};
+
+} // namespace penumbra

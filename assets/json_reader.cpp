@@ -1,0 +1,146 @@
+#include "assets/json_reader.h"
+
+#include <cmath>
+
+namespace penumbra {
+
+namespace {
+
+// Nesting of brackets outside strings. Text that is not JSON gives some number; the parser refuses
+// it later.
+int nestingDepth(std::string_view text)
+{
+    int depth = 0;
+    int deepest = 0;
+    bool inString = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (inString) {
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                inString = false;
+        } else if (c == '"') {
+            inString = true;
+        } else if (c == '{' || c == '[') {
+            deepest = std::max(deepest, ++depth);
+        } else if (c == '}' || c == ']') {
+            --depth;
+        }
+    }
+    return deepest;
+}
+
+} // namespace
+
+Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
+{
+    if (text.size() > maxBytes)
+        return Error{fmt::format("JSON of {} bytes, more than {}", text.size(), maxBytes)};
+    if (nestingDepth(text) > kMaxJsonDepth)
+        return Error{fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth)};
+    nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    if (document.is_discarded())
+        return Error{"not valid JSON"};
+    if (!document.is_object())
+        return Error{"JSON whose root is not an object"};
+    return document;
+}
+
+JsonReader JsonReader::member(const char* key) const
+{
+    const std::string place = m_place + "." + key;
+    if (!m_value)
+        return {nullptr, place, *m_problem};
+    const auto found = m_value->is_object() ? m_value->find(key) : m_value->end();
+    if (found == m_value->end()) {
+        refuse(fmt::format("has no \"{}\"", key));
+        return {nullptr, place, *m_problem};
+    }
+    return {&*found, place, *m_problem};
+}
+
+JsonReader JsonReader::element(std::size_t index) const
+{
+    const std::string place = fmt::format("{}[{}]", m_place, index);
+    if (!m_value)
+        return {nullptr, place, *m_problem};
+    if (!m_value->is_array() || index >= m_value->size()) {
+        refuse(fmt::format("has no element {}", index));
+        return {nullptr, place, *m_problem};
+    }
+    return {&(*m_value)[index], place, *m_problem};
+}
+
+bool JsonReader::has(const char* key) const
+{
+    return m_value && m_value->is_object() && m_value->contains(key);
+}
+
+std::size_t JsonReader::length(std::size_t max) const
+{
+    if (!m_value)
+        return 0;
+    if (!m_value->is_array() || m_value->size() > max) {
+        refuse(fmt::format("is not an array of at most {}", max));
+        return 0;
+    }
+    return m_value->size();
+}
+
+std::uint64_t JsonReader::asCount(std::uint64_t max) const
+{
+    if (!m_value)
+        return 0;
+    if (!m_value->is_number_unsigned() || m_value->get<std::uint64_t>() > max) {
+        refuse(fmt::format("is not a whole number from 0 to {}", max));
+        return 0;
+    }
+    return m_value->get<std::uint64_t>();
+}
+
+float JsonReader::asNumber(float min, float max) const
+{
+    if (!m_value)
+        return 0;
+    const double value = m_value->is_number() ? m_value->get<double>() : std::nan("");
+    if (!(value >= min && value <= max)) {
+        refuse(fmt::format("is not a number from {} to {}", min, max));
+        return 0;
+    }
+    return static_cast<float>(value);
+}
+
+std::string JsonReader::asText() const
+{
+    if (!m_value)
+        return {};
+    if (!m_value->is_string()) {
+        refuse("is not text");
+        return {};
+    }
+    return m_value->get<std::string>();
+}
+
+std::uint64_t JsonReader::count(const char* key, std::uint64_t max) const
+{
+    return member(key).asCount(max);
+}
+
+float JsonReader::number(const char* key, float min, float max) const
+{
+    return member(key).asNumber(min, max);
+}
+
+std::string JsonReader::text(const char* key) const
+{
+    return member(key).asText();
+}
+
+void JsonReader::refuse(const std::string& what) const
+{
+    if (!*m_problem)
+        *m_problem = Error{m_place + " " + what};
+}
+
+} // namespace penumbra

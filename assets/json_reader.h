@@ -1,0 +1,65 @@
+// Reading of untrusted JSON. parseJson bounds size and depth before the parser sees the text.
+// JsonReader walks the document and keeps the first problem, with its place, so that callers read
+// everything and check once:
+//   JsonProblem problem;
+//   JsonReader root(document, "json", problem);
+//   const std::uint64_t count = root.member("accessors").element(3).count("count", kMax);
+//   if (problem) return *problem;
+// After a problem all reads return zeros, which are safe to size and index with.
+#pragma once
+
+#include "runtime/result.h"
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace penumbra {
+
+// Deeper nesting than any real glTF has; readers that recurse are safe at this depth.
+constexpr int kMaxJsonDepth = 64;
+
+// Parses UTF-8 text of at most `maxBytes`, nested at most kMaxJsonDepth deep; the root is an
+// object.
+Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes);
+
+using JsonProblem = std::optional<Error>;
+
+class JsonReader {
+public:
+    JsonReader(const nlohmann::json& value, std::string place, JsonProblem& problem)
+        : JsonReader(&value, std::move(place), problem)
+    {}
+
+    // A required member of an object, or element of an array.
+    [[nodiscard]] JsonReader member(const char* key) const;
+    [[nodiscard]] JsonReader element(std::size_t index) const;
+    [[nodiscard]] bool has(const char* key) const;
+
+    // The value itself: array length, whole number 0..max, finite number in [min, max], text, flag.
+    [[nodiscard]] std::size_t length(std::size_t max) const;
+    [[nodiscard]] std::uint64_t asCount(std::uint64_t max) const;
+    [[nodiscard]] float asNumber(float min, float max) const;
+    [[nodiscard]] std::string asText() const;
+
+    // The same of a required member.
+    [[nodiscard]] std::uint64_t count(const char* key, std::uint64_t max) const;
+    [[nodiscard]] float number(const char* key, float min, float max) const;
+    [[nodiscard]] std::string text(const char* key) const;
+
+    // Records a problem at this place unless there is one already.
+    void refuse(const std::string& what) const;
+
+private:
+    JsonReader(const nlohmann::json* value, std::string place, JsonProblem& problem)
+        : m_value(value), m_place(std::move(place)), m_problem(&problem)
+    {}
+
+    const nlohmann::json* m_value; // null after a problem
+    std::string m_place;
+    JsonProblem* m_problem;
+};
+
+} // namespace penumbra

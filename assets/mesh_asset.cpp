@@ -1,0 +1,175 @@
+#include "assets/mesh_asset.h"
+
+#include <algorithm>
+
+namespace penumbra {
+
+namespace {
+
+// Keeps cull tests on the safe side of rounding.
+constexpr float kRadiusSlack = 1.0f + 1e-5f;
+
+struct Sphere {
+    vec3 center{0};
+    float radius = 0;
+};
+
+float farthest(const std::vector<vec3>& points, vec3 center)
+{
+    float squared = 0;
+    for (const vec3 point : points)
+        squared = std::max(squared, dot(point - center, point - center));
+    return std::sqrt(squared);
+}
+
+// The centre of the box, then steps of shrinking size towards the farthest point (Badoiu and
+// Clarkson, "Smaller core-sets for balls", SODA 2003); the best of all centres seen.
+Sphere boundingSphere(const std::vector<vec3>& points)
+{
+    vec3 low = points.front();
+    vec3 high = low;
+    for (const vec3 point : points) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    constexpr int kSteps = 16; // within 5 % of the smallest sphere, mostly 1 %
+    vec3 center = 0.5f * (low + high);
+    Sphere best{center, farthest(points, center)};
+    for (int step = 1; step <= kSteps; ++step) {
+        const vec3 far = *std::max_element(points.begin(), points.end(), [&](vec3 a, vec3 b) {
+            return dot(a - center, a - center) < dot(b - center, b - center);
+        });
+        center += (far - center) / (static_cast<float>(step) + 1.0f);
+        if (const float radius = farthest(points, center); radius < best.radius)
+            best = {center, radius};
+    }
+    return best;
+}
+
+MeshCluster boundCluster(const std::vector<vec3>& points, const std::vector<vec3>& faceNormals)
+{
+    const Sphere sphere = boundingSphere(points);
+    MeshCluster cluster{sphere.center, sphere.radius * kRadiusSlack};
+    vec3 sum{0};
+    for (const vec3 normal : faceNormals)
+        sum += normal;
+    if (const float size = length(sum);
+        size > 1e-3f * static_cast<float>(faceNormals.size()) && size > 0) {
+        cluster.coneAxis = sum / size;
+        cluster.coneCutoff = 1;
+        for (const vec3 normal : faceNormals)
+            cluster.coneCutoff = std::min(cluster.coneCutoff, dot(normal, cluster.coneAxis));
+        cluster.coneCutoff = std::max(cluster.coneCutoff - 1e-5f, -1.0f);
+    }
+    return cluster;
+}
+
+} // namespace
+
+std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
+                                       const std::vector<std::uint32_t>& indices)
+{
+    const std::size_t clusterCount = (positions.size() + kClusterVertices - 1) / kClusterVertices;
+    // Triangles by cluster: counted, then filled. A triangle enters each cluster that it touches
+    // once.
+    const auto visit = [&](auto&& enter) {
+        for (std::uint32_t corner = 0; corner + 2 < indices.size(); corner += 3) {
+            const std::uint32_t a = indices[corner] / kClusterVertices;
+            const std::uint32_t b = indices[corner + 1] / kClusterVertices;
+            const std::uint32_t c = indices[corner + 2] / kClusterVertices;
+            PENUMBRA_DEBUG_ASSERT(std::max({a, b, c}) < clusterCount, "triangle {} of {} vertices",
+                                  corner / 3, positions.size());
+            enter(a, corner);
+            if (b != a)
+                enter(b, corner);
+            if (c != a && c != b)
+                enter(c, corner);
+        }
+    };
+    std::vector<std::uint32_t> begins(clusterCount + 1, 0);
+    visit([&](std::uint32_t cluster, std::uint32_t) { ++begins[cluster + 1]; });
+    for (std::size_t i = 0; i < clusterCount; ++i)
+        begins[i + 1] += begins[i];
+    std::vector<std::uint32_t> corners(begins.back());
+    std::vector<std::uint32_t> ends(begins.begin(), begins.end() - 1);
+    visit([&](std::uint32_t cluster, std::uint32_t corner) { corners[ends[cluster]++] = corner; });
+
+    std::vector<MeshCluster> clusters(clusterCount);
+    std::vector<vec3> points;
+    std::vector<vec3> faceNormals;
+    for (std::size_t i = 0; i < clusterCount; ++i) {
+        const auto first = positions.begin() + static_cast<std::ptrdiff_t>(i * kClusterVertices);
+        points.assign(first, positions.begin() +
+                                 static_cast<std::ptrdiff_t>(
+                                     std::min((i + 1) * kClusterVertices, positions.size())));
+        faceNormals.clear();
+        for (std::uint32_t t = begins[i]; t < begins[i + 1]; ++t) {
+            const vec3 a = positions[indices[corners[t]]];
+            const vec3 b = positions[indices[corners[t] + 1]];
+            const vec3 c = positions[indices[corners[t] + 2]];
+            points.insert(points.end(), {a, b, c});
+            const vec3 normal = cross(b - a, c - a);
+            if (const float size = length(normal); size > 0)
+                faceNormals.push_back(normal / size);
+        }
+        clusters[i] = boundCluster(points, faceNormals);
+    }
+    return clusters;
+}
+
+void updateDerived(MeshAsset& mesh)
+{
+    mesh.clusters = buildClusters(mesh.positions, mesh.indices);
+    mesh.boundsMin = mesh.boundsMax = mesh.positions.empty() ? vec3{0} : mesh.positions.front();
+    for (const vec3 position : mesh.positions) {
+        mesh.boundsMin = glm::min(mesh.boundsMin, position);
+        mesh.boundsMax = glm::max(mesh.boundsMax, position);
+    }
+}
+
+Result<void> validateMesh(const MeshAsset& mesh)
+{
+    const std::size_t vertexCount = mesh.positions.size();
+    if (vertexCount == 0 || mesh.indices.empty())
+        return Error{"mesh: no triangles"};
+    if (vertexCount > kMaxMeshVertices || mesh.indices.size() / 3 > kMaxMeshTriangles)
+        return Error{
+            fmt::format("mesh: {} vertices and {} triangles, above the limits of {} and {}",
+                        vertexCount, mesh.indices.size() / 3, kMaxMeshVertices, kMaxMeshTriangles)};
+    if (mesh.indices.size() % 3 != 0)
+        return Error{fmt::format("mesh: {} indices are not whole triangles", mesh.indices.size())};
+    if (mesh.normals.size() != vertexCount || mesh.selfVisibility.size() != vertexCount)
+        return Error{fmt::format("mesh: {} positions, {} normals, {} self-visibilities",
+                                 vertexCount, mesh.normals.size(), mesh.selfVisibility.size())};
+    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+        if (mesh.indices[i] >= vertexCount)
+            return Error{fmt::format("mesh: triangle {} uses vertex {} of {}", i / 3,
+                                     mesh.indices[i], vertexCount)};
+    for (std::size_t i = 0; i < vertexCount; ++i) {
+        const vec3 p = abs(mesh.positions[i]);
+        if (!(p.x <= kMaxCoordinate && p.y <= kMaxCoordinate && p.z <= kMaxCoordinate))
+            return Error{fmt::format("mesh: vertex {}: a coordinate beyond {} m or not finite", i,
+                                     kMaxCoordinate)};
+        const float squared = dot(mesh.normals[i], mesh.normals[i]);
+        if (!(squared > 0.98f && squared < 1.02f))
+            return Error{
+                fmt::format("mesh: vertex {}: normal of length {}", i, std::sqrt(squared))};
+    }
+    const MeshMaterial& material = mesh.material;
+    for (int channel = 0; channel < 3; ++channel)
+        if (!(material.albedo[channel] >= 0 && material.albedo[channel] <= 1))
+            return Error{
+                fmt::format("material: albedo {}, allowed 0 to 1", material.albedo[channel])};
+    if (!(material.glossFraction >= 0 && material.glossFraction <= 1))
+        return Error{
+            fmt::format("material: gloss fraction {}, allowed 0 to 1", material.glossFraction)};
+    if (!(material.glossExponent >= 0 && material.glossExponent <= kMaxGlossExponent))
+        return Error{fmt::format("material: gloss exponent {}, allowed 0 to {}",
+                                 material.glossExponent, kMaxGlossExponent)};
+    if (mesh.name.size() > kMaxNameBytes)
+        return Error{
+            fmt::format("mesh: name of {} bytes, at most {}", mesh.name.size(), kMaxNameBytes)};
+    return mesh.field ? validateField(*mesh.field) : Result<void>{};
+}
+
+} // namespace penumbra

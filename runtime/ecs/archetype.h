@@ -1,0 +1,160 @@
+// Archetype: the rows of all entities that have exactly the same components.
+//
+// A row's values lie in blocks, column by column. The first block grows 1 -> 4 -> 16 -> 128 KiB
+// (about: a block holds a power of two of rows), further blocks are full ones, so that small
+// archetypes stay small and large ones run at the speed of plain arrays. A segment is the part of a
+// block of about 16 KiB: the unit of change versions and of parallel work. Entity ids lie apart.
+//
+//   block   [column 0: rows x bytes][gap][column 1: rows x bytes] …   eight segments when full
+//   row r   block r >> blockShift, at r & (blockRows - 1)
+//
+// A component split into lanes has one column per lane, side by side in the column list.
+// Threads may work on different segments, and on different columns of one segment, at once.
+#pragma once
+
+#include "runtime/ecs/component.h"
+#include "runtime/ecs/entity_table.h"
+#include "runtime/ecs/row_changes.h"
+
+#include <memory>
+#include <new>
+#include <utility>
+
+namespace penumbra::ecs {
+
+inline constexpr uint32_t kSegmentBytes = 16 * 1024; // half an L1 cache
+inline constexpr uint32_t kFirstBlockBytes = 1024;
+inline constexpr uint32_t kBlockSegmentShift =
+    3; // full block: 128 KiB, beyond it nothing is gained
+
+struct Column {
+    ComponentId component = 0;
+    uint16_t lane = 0;
+    uint32_t bytes = 0;      // of one row
+    uint32_t prefix = 0;     // bytes of one row in the columns before
+    uint32_t offset = 0;     // of row 0 in a block, at the current block size
+    int32_t rowChanges = -1; // index into m_rowChanges; on a component's first lane only
+};
+
+class Archetype {
+public:
+    Archetype(uint32_t index, const ComponentMask& mask);
+
+    [[nodiscard]] uint32_t index() const { return m_index; }
+    [[nodiscard]] const ComponentMask& mask() const { return m_mask; }
+    [[nodiscard]] std::span<const Entity> entities() const { return m_entities; }
+    [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(m_entities.size()); }
+    [[nodiscard]] uint32_t segmentShift() const { return m_segmentShift; }
+    [[nodiscard]] uint32_t segmentRows() const { return 1u << m_segmentShift; }
+    [[nodiscard]] uint32_t blockRows() const { return 1u << m_blockShift; }
+    [[nodiscard]] uint32_t segmentCount() const
+    {
+        return (count() + segmentRows() - 1) >> m_segmentShift;
+    }
+
+    // First column of a component; -1 if it is absent or a tag.
+    [[nodiscard]] int32_t columnOf(ComponentId id) const { return m_columnOf[id]; }
+    [[nodiscard]] std::span<const Column> columns() const { return m_columns; }
+    [[nodiscard]] std::byte* at(uint32_t column, uint32_t row) const
+    {
+        const Column& c = m_columns[column];
+        return m_blocks[row >> m_blockShift].get() + c.offset +
+               size_t{row & (blockRows() - 1)} * c.bytes;
+    }
+
+    // Structure. append() leaves the values of the new rows unset and returns the first row.
+    // removeRow() moves the last row into the gap and returns the entity that moved, or null.
+    // New and moved rows count as changed in all their components.
+    uint32_t append(std::span<const Entity> entities, Stamp stamp);
+    Entity removeRow(uint32_t row, Stamp stamp);
+    // The values of the components that both have.
+    void copyRow(uint32_t row, const Archetype& source, uint32_t sourceRow);
+    // rows [row, row + sourceRows.size()), column by column; `second` of each pair is not looked
+    // at.
+    void copyRows(uint32_t row, const Archetype& source,
+                  std::span<const std::pair<uint32_t, uint32_t>> sourceRows);
+    void trim(); // gives back blocks without rows
+
+    // Whole values by type, whatever their lanes. Writing does not mark.
+    void read(ComponentId id, uint32_t row, void* value) const;
+    void write(ComponentId id, uint32_t row, const void* value) { fill(id, row, 1, value, 0); }
+    // rows [row, row + count) from values `stride` bytes apart; stride 0 repeats one value.
+    void fill(ComponentId id, uint32_t row, uint32_t count, const void* values, size_t stride);
+
+    // Change marks. `column` is the first column of a component.
+    void markRow(uint32_t column, uint32_t row, Stamp stamp)
+    {
+        const uint32_t segment = row >> m_segmentShift;
+        touch(column, segment, stamp);
+        if (const int32_t changes = m_columns[column].rowChanges; changes >= 0)
+            m_rowChanges[changes].mark(segment, row & (segmentRows() - 1));
+    }
+    // Rows count from the segment's start.
+    void markRows(uint32_t column, uint32_t segment, uint32_t row, uint32_t count, Stamp stamp)
+    {
+        touch(column, segment, stamp);
+        if (const int32_t changes = m_columns[column].rowChanges; changes >= 0)
+            m_rowChanges[changes].mark(segment, row, count);
+    }
+    [[nodiscard]] uint64_t version(uint32_t column, uint32_t segment) const
+    {
+        return m_versions[size_t{segment} * m_columns.size() + column];
+    }
+    // Bits of 64 rows that may have changed after `since`: see RowChanges. All of a changed segment
+    // for a component that did not opt in.
+    [[nodiscard]] uint64_t changedRows(uint32_t column, uint32_t segment, uint32_t word,
+                                       uint64_t since) const
+    {
+        if (version(column, segment) <= since)
+            return 0;
+        const int32_t changes = m_columns[column].rowChanges;
+        return changes < 0 ? ~uint64_t{0} : m_rowChanges[changes].changed(segment, word, since);
+    }
+
+    [[nodiscard]] size_t blockBytes() const { return m_blocks.size() * m_blockBytes; }
+    [[nodiscard]] size_t valueBytes() const { return size_t{count()} * m_rowBytes; }
+    [[nodiscard]] size_t bookBytes() const;
+
+    // Where adding or removing a ComponentSet leads, by slot; null until asked for the first time.
+    std::vector<Archetype*> withSet, withoutSet;
+
+private:
+    struct FreeBlock {
+        void operator()(std::byte* block) const
+        {
+            ::operator delete (block, std::align_val_t{kMaxAlignment});
+        }
+    };
+    using Block = std::unique_ptr<std::byte, FreeBlock>;
+
+    [[nodiscard]] Block allocateBlock() const;
+    void layOutBlock(uint32_t blockShift);
+    void reserve(uint32_t rows);
+    void growFirstBlock();
+    void markStructural(uint32_t row, uint32_t count, Stamp stamp);
+    void touch(uint32_t column, uint32_t segment, Stamp stamp)
+    {
+        uint64_t& version = m_versions[size_t{segment} * m_columns.size() + column];
+        if (version == stamp.version)
+            return;
+        const int32_t changes = m_columns[column].rowChanges;
+        if (changes >= 0 && version <= stamp.frameBase)
+            m_rowChanges[changes].startFrame(segment, version);
+        version = stamp.version;
+    }
+
+    std::vector<Entity> m_entities; // [count]
+    std::vector<Block> m_blocks;    // all of one size
+    std::vector<Column> m_columns;
+    std::vector<uint64_t> m_versions; // [segment][column], of the last write; first lanes only
+    std::vector<RowChanges> m_rowChanges;
+    std::array<int16_t, kMaxComponents> m_columnOf;
+    ComponentMask m_mask;
+    uint32_t m_index;
+    uint32_t m_rowBytes = 0;
+    uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
+    uint32_t m_segmentShift = 0;
+    size_t m_blockBytes = 0;
+};
+
+} // namespace penumbra::ecs

@@ -1,0 +1,99 @@
+// CommandBuffer: structural changes written down now and made later, at one point.
+//
+//   const Entity spark = commands.create(Position{…}, Parent{ball}); // not real before playback
+//   commands.add(spark, Burning{});
+//   commands.destroy(old);
+//   play(world, commands);
+//
+// One buffer per thread or system; several are played in the order given, so equal contents give
+// equal worlds whatever recorded them first. All commands of one entity are merged: it moves once,
+// however many components come and go. Rules, for commands that met a changed world:
+//   - commands for an entity that is no longer alive are dropped and counted;
+//   - destroy wins over everything else said about that entity, before or after;
+//   - attaching to a parent that is no longer alive destroys the child: it shares the parent's
+//   fate;
+//   - parents change entity by entity, in the order of each one's first command; attaching that
+//     would close a cycle is refused and counted, and the old parent stays;
+//   - set() of a component that is absent by then is dropped and counted.
+#pragma once
+
+#include "runtime/ecs/hierarchy.h"
+
+#include <cstring>
+
+namespace penumbra::ecs {
+
+class World;
+
+struct PlaybackStatistics {
+    uint32_t commands = 0; // recorded
+    uint32_t dropped = 0;  // for dead entities and absent components
+    uint32_t refused = 0;  // cycles
+    uint32_t moves = 0;    // rows that went to another archetype, new ones included
+};
+
+class CommandBuffer {
+public:
+    // Names the buffer in its deferred entities, so that they are not taken for another's. 12 bits.
+    explicit CommandBuffer(uint32_t tag = 0) : m_tag(tag & 0xfff) {}
+
+    // The entity may be used in this buffer at once, as a target and inside component values (the
+    // fields in kEntityFields), until playback.
+    template <class... Ts>
+    Entity create(const Ts&... values)
+    {
+        const Entity entity{m_created++, m_tag << 19 | (m_epoch & 0x7ffff) | 1u << 31};
+        m_ops.push_back({entity, 0, Kind::create, 0});
+        add(entity, values...);
+        return entity;
+    }
+    void destroy(Entity entity) { m_ops.push_back({entity, 0, Kind::destroy, 0}); }
+
+    // Adds or overwrites.
+    template <class... Ts>
+    void add(Entity entity, const Ts&... values)
+    {
+        (record(entity, componentId<Ts>(), Kind::add, &values, kIsTag<Ts> ? 0 : sizeof(Ts)), ...);
+    }
+    template <class T>
+    void set(Entity entity, const T& value)
+    {
+        static_assert(!std::is_same_v<T, Parent>, "setParent() changes parents");
+        record(entity, componentId<T>(), Kind::set, &value, sizeof(T));
+    }
+    template <class... Ts>
+    void remove(Entity entity)
+    {
+        (record(entity, componentId<Ts>(), Kind::remove, nullptr, 0), ...);
+    }
+    void setParent(Entity child, Entity parent) { add(child, Parent{parent}); }
+
+    [[nodiscard]] bool isEmpty() const { return m_ops.empty(); }
+    [[nodiscard]] size_t count() const { return m_ops.size(); }
+    void clear();
+
+private:
+    friend class CommandPlayback;
+
+    enum class Kind : uint16_t { create, destroy, add, set, remove };
+    struct Op {
+        Entity target;
+        ComponentId component;
+        Kind kind;
+        uint32_t value; // offset in m_values; unused by create, destroy, remove
+    };
+
+    void record(Entity entity, ComponentId id, Kind kind, const void* value, size_t bytes);
+
+    std::vector<Op> m_ops;
+    std::vector<std::byte> m_values;
+    uint32_t m_created = 0;
+    uint32_t m_epoch = 0; // playbacks so far
+    uint32_t m_tag;
+};
+
+// Makes the changes, in the order given, and empties the buffers.
+PlaybackStatistics play(World& world, std::span<CommandBuffer* const> buffers);
+PlaybackStatistics play(World& world, CommandBuffer& buffer);
+
+} // namespace penumbra::ecs

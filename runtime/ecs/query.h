@@ -1,0 +1,140 @@
+// Query: walks all rows that have what its terms ask for. Made by World::query() and
+// SystemContext::query(), cheap to make and to copy; the archetypes it matches are cached in World.
+//
+//   world.query<Position, const Velocity, Without<Frozen>>().each(
+//       [&](Position& p, const Velocity& v) { p.x += v.x * dt; });
+//
+// Order: archetypes in the order they were made, rows from first to last; the same at any number of
+// threads. While it runs, structural changes are refused (asserted in debug): record commands.
+// Terms are listed in query_terms.h. Lambdas may take Entity as their first parameter.
+#pragma once
+
+#include "runtime/ecs/parallel.h"
+#include "runtime/ecs/query_cache.h"
+#include "runtime/ecs/query_terms.h"
+
+#include <atomic>
+#include <utility>
+
+namespace penumbra::ecs {
+
+struct Parent; // written by World alone, so that the links of Hierarchy follow
+
+// Rows that lie side by side in memory: one segment of one archetype.
+struct Segment {
+    const Entity* entities; // [count]
+    uint32_t count;
+    uint32_t ordinal; // 0, 1, 2 … in the order of iteration: where a reduction puts its part
+};
+
+template <class... Terms>
+class Query {
+    template <class Term>
+    using ArgumentIfData =
+        std::conditional_t<kIsData<Term>, std::tuple<RowArgument<Term>>, std::tuple<>>;
+    using Arguments = decltype(std::tuple_cat(std::declval<ArgumentIfData<Terms>>()...));
+    static constexpr size_t kDataCount = std::tuple_size_v<Arguments>;
+    static constexpr size_t kChangedCount =
+        (0 + ... + (TermTraits<Terms>::kKind == TermKind::changed));
+
+    template <size_t k>
+    using Argument = std::tuple_element_t<k, Arguments>;
+    using DataIndices = std::make_index_sequence<kDataCount>;
+    static_assert(kDataCount + kChangedCount <= kMaxQueryTerms);
+    static_assert((!(kWrites<Terms> &&
+                     std::is_same_v<typename TermTraits<Terms>::Component, Parent>)&&...),
+                  "Parent is written by World::setParent alone");
+    static_assert((!((kIsData<Terms> || TermTraits<Terms>::kKind == TermKind::changed) &&
+                     kIsTag<typename TermTraits<Terms>::Component>)&&...),
+                  "a tag has no value: With<Tag>");
+
+public:
+    static constexpr bool kReadOnly = !(kWrites<Terms> || ...);
+
+    // For World and SystemContext. `iterating` counts the walks in progress.
+    Query(const QueryCache& cache, Stamp stamp, uint64_t since, std::atomic<uint32_t>& iterating)
+        : m_cache(&cache), m_stamp(stamp), m_since(since), m_iterating(&iterating)
+    {}
+
+    // The terms, for the cache.
+    static uint32_t slot();
+
+    // Changed<> passes what was written after this version (World::version() at the last look).
+    [[nodiscard]] Query since(uint64_t version) const
+    {
+        Query query = *this;
+        query.m_since = version;
+        return query;
+    }
+
+    // f([Entity,] arguments…) for each row. With Changed<>, only rows that changed; mutable
+    // arguments then mark just those rows.
+    template <class F>
+    void each(F&& f) const;
+
+    // f(Segment, columns…) for each segment with rows. With Changed<>, only segments that changed.
+    // Pointers of different columns never overlap: declare them __restrict.
+    template <class F>
+    void eachSegment(F&& f) const;
+
+    // The same on all threads of the arena, one segment per task; f may be called at once for
+    // different segments. Inline if there are fewer than kInlineSegments.
+    template <class F>
+    void parallelEach(F&& f) const;
+    template <class F>
+    void parallelEachSegment(F&& f) const;
+    // 16 KiB take about as long to walk as handing a task to another thread.
+    static constexpr uint32_t kInlineSegments = 4;
+
+    // Rows in matching archetypes; Changed<> is not looked at.
+    [[nodiscard]] uint32_t count() const { return m_cache->rowCount(); }
+    [[nodiscard]] uint32_t segmentCount() const;
+
+private:
+    using Match = QueryCache::Match;
+    struct Task {
+        const Match* match;
+        uint32_t segment;
+    };
+
+    template <class Visit>
+    void forSegments(Visit&& visit) const;
+    template <class Visit>
+    void forSegmentsParallel(Visit&& visit) const;
+    [[nodiscard]] bool segmentPasses(const Match& match, uint32_t segment) const;
+    [[nodiscard]] uint64_t changedRows(const Match& match, uint32_t segment, uint32_t word) const;
+    // `count` rows from `row` of a segment are about to be written.
+    void mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const;
+
+    // The pointers to row `row` of all columns of all data terms, flat.
+    template <size_t... k>
+    static auto columnPointers(const Match& match, uint32_t row, std::index_sequence<k...>);
+    template <size_t k>
+    static auto lanePointers(const Match& match, uint32_t row);
+    template <size_t k, class Columns>
+    static auto segmentArgument(const Columns& columns);
+    template <size_t k>
+    static constexpr size_t firstPointer();
+
+    template <class F, class Columns, size_t... k>
+    static void callRow(F& f, const Entity* entities, size_t row, const Columns& columns,
+                        std::index_sequence<k...>);
+    template <class F, class... Elements>
+    [[gnu::noinline]] static void callRows(F& f, const Entity* entities, size_t count,
+                                           Elements* __restrict... columns);
+    template <class F>
+    void callRun(F& f, const Match& match, uint32_t row, uint32_t count) const;
+    template <class F>
+    void callChanged(F& f, const Match& match, uint32_t segment) const;
+    template <class F>
+    void callSegment(F& f, const Match& match, uint32_t segment, uint32_t ordinal) const;
+
+    const QueryCache* m_cache;
+    Stamp m_stamp;
+    uint64_t m_since;
+    std::atomic<uint32_t>* m_iterating;
+};
+
+} // namespace penumbra::ecs
+
+#include "runtime/ecs/query_impl.h"

@@ -1,0 +1,46 @@
+// QueryCache: the archetypes that a query matches, with the columns it wants, in the order in which
+// the archetypes were made. The type-erased half of Query; owned by World.
+#pragma once
+
+#include "runtime/ecs/archetype.h"
+
+namespace penumbra::ecs {
+
+inline constexpr uint32_t kMaxQueryTerms = 16;
+
+// What a query asks for. One per combination of terms in the program, whatever code asks.
+struct QueryTerms {
+    ComponentMask with, without;
+    std::vector<ComponentId> data; // columns to hand out, in the order of the terms
+    std::vector<ComponentId>
+        changed; // a row passes if any of them changed; empty: every row passes
+    friend bool operator==(const QueryTerms&, const QueryTerms&) = default;
+};
+
+// Thread-safe. The slot is dense: worlds keep their caches in an array.
+[[nodiscard]] uint32_t registerQuery(const QueryTerms& terms);
+[[nodiscard]] const QueryTerms& queryTerms(uint32_t slot);
+
+class QueryCache {
+public:
+    struct Match {
+        Archetype* archetype;
+        std::array<int16_t, kMaxQueryTerms> columns; // data, then changed; -1: absent
+    };
+
+    explicit QueryCache(const QueryTerms& terms) : m_terms(terms) {}
+
+    // Looks at the archetypes that appeared since the last call.
+    void extend(std::span<const std::unique_ptr<Archetype>> archetypes);
+
+    [[nodiscard]] std::span<const Match> matches() const { return m_matches; }
+    [[nodiscard]] uint32_t rowCount() const;
+    [[nodiscard]] size_t bytes() const { return m_matches.capacity() * sizeof(Match); }
+
+private:
+    const QueryTerms& m_terms;
+    std::vector<Match> m_matches;
+    size_t m_seen = 0;
+};
+
+} // namespace penumbra::ecs

@@ -1,0 +1,303 @@
+// The templates of query.h, which includes this file.
+#pragma once
+
+#include "runtime/ecs/query.h"
+
+namespace penumbra::ecs {
+
+// Counts the walks of a world in debug builds, so that structural changes meanwhile can assert.
+class IterationGuard {
+public:
+#ifdef NDEBUG
+    explicit IterationGuard(std::atomic<uint32_t>&) {}
+#else
+    explicit IterationGuard(std::atomic<uint32_t>& walks) : m_walks(walks)
+    {
+        ++m_walks;
+    }
+    ~IterationGuard()
+    {
+        --m_walks;
+    }
+    IterationGuard(const IterationGuard&) = delete;
+    IterationGuard& operator=(const IterationGuard&) = delete;
+
+private:
+    std::atomic<uint32_t>& m_walks;
+#endif
+};
+
+template <class... Terms>
+uint32_t Query<Terms...>::slot()
+{
+    static const uint32_t slot = [] {
+        QueryTerms terms;
+        const auto add = [&]<class Term>() {
+            using Traits = TermTraits<Term>;
+            const ComponentId id = componentId<typename Traits::Component>();
+            if (Traits::kKind == TermKind::without)
+                terms.without.set(id);
+            else if (!Traits::kOptional)
+                terms.with.set(id);
+            if (Traits::kKind == TermKind::data)
+                terms.data.push_back(id);
+            if (Traits::kKind == TermKind::changed)
+                terms.changed.push_back(id);
+        };
+        (add.template operator()<Terms>(), ...);
+        return registerQuery(terms);
+    }();
+    return slot;
+}
+
+template <class... Terms>
+uint32_t Query<Terms...>::segmentCount() const
+{
+    uint32_t segments = 0;
+    for (const Match& match : m_cache->matches())
+        segments += match.archetype->segmentCount();
+    return segments;
+}
+
+template <class... Terms>
+uint64_t Query<Terms...>::changedRows(const Match& match, uint32_t segment, uint32_t word) const
+{
+    uint64_t rows = 0;
+    for (size_t i = 0; i < kChangedCount; ++i)
+        rows |= match.archetype->changedRows(match.columns[kDataCount + i], segment, word, m_since);
+    return rows;
+}
+
+template <class... Terms>
+bool Query<Terms...>::segmentPasses(const Match& match, uint32_t segment) const
+{
+    bool passes = kChangedCount == 0;
+    for (size_t i = 0; i < kChangedCount; ++i)
+        passes |= match.archetype->version(match.columns[kDataCount + i], segment) > m_since;
+    return passes;
+}
+
+template <class... Terms>
+void Query<Terms...>::mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const
+{
+    [&]<size_t... k>(std::index_sequence<k...>)
+    {
+        const auto markTerm = [&](bool writes, int16_t column) {
+            if (writes && column >= 0)
+                match.archetype->markRows(column, segment, row, count, m_stamp);
+        };
+        (markTerm(!std::is_const_v<typename Argument<k>::Access>, match.columns[k]), ...);
+    }
+    (DataIndices());
+}
+
+template <class... Terms>
+template <size_t k>
+auto Query<Terms...>::lanePointers(const Match& match, uint32_t row)
+{
+    using Element = typename Argument<k>::Element;
+    return [&]<size_t... kLane>(std::index_sequence<kLane...>)
+    {
+        const int32_t column = match.columns[k];
+        const auto pointer = [&](size_t lane) {
+            std::byte* at = column < 0 ? nullptr : match.archetype->at(column + lane, row);
+            return reinterpret_cast<Element*>(at);
+        };
+        return std::make_tuple(pointer(kLane)...);
+    }
+    (std::make_index_sequence<Argument<k>::kPointers>());
+}
+
+template <class... Terms>
+template <size_t... k>
+auto Query<Terms...>::columnPointers(const Match& match, uint32_t row, std::index_sequence<k...>)
+{
+    return std::tuple_cat(lanePointers<k>(match, row)...);
+}
+
+template <class... Terms>
+template <size_t k>
+constexpr size_t Query<Terms...>::firstPointer()
+{
+    return []<size_t... i>(std::index_sequence<i...>)
+    {
+        return (size_t{0} + ... + Argument<i>::kPointers);
+    }
+    (std::make_index_sequence<k>());
+}
+
+template <class... Terms>
+template <class F, class Columns, size_t... k>
+void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities, size_t row,
+                              const Columns& columns, std::index_sequence<k...>)
+{
+    Arguments arguments;
+    (std::get<k>(arguments).template load<firstPointer<k>()>(columns, row), ...);
+    if constexpr (std::is_invocable_v<F&, Entity, decltype(std::get<k>(arguments).get())...>)
+        f(entities[row], std::get<k>(arguments).get()...);
+    else
+        f(std::get<k>(arguments).get()...);
+    (std::get<k>(arguments).template store<firstPointer<k>()>(columns, row), ...);
+}
+
+// Its own function because the compiler trusts __restrict on parameters alone: without it, loops
+// over more than a few columns do not vectorise.
+template <class... Terms>
+template <class F, class... Elements>
+void Query<Terms...>::callRows(F& f, const Entity* entities, size_t count,
+                               Elements* __restrict... columns)
+{
+    const std::tuple<Elements*...> all(columns...);
+    for (size_t row = 0; row < count; ++row)
+        callRow(f, entities, row, all, DataIndices());
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row, uint32_t count) const
+{
+    std::apply(
+        [&](auto*... columns) {
+            callRows(f, match.archetype->entities().data() + row, count, columns...);
+        },
+        columnPointers(match, row, DataIndices()));
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) const
+{
+    const Archetype& archetype = *match.archetype;
+    const uint32_t first = segment << archetype.segmentShift();
+    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    const auto columns = columnPointers(match, first, DataIndices());
+    const Entity* entities = archetype.entities().data() + first;
+    for (uint32_t word = 0; word * 64 < rows; ++word) {
+        const uint32_t left = rows - word * 64;
+        uint64_t bits = changedRows(match, segment, word);
+        bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
+        for (; bits != 0; bits &= bits - 1) {
+            const uint32_t row = word * 64 + static_cast<uint32_t>(std::countr_zero(bits));
+            mark(match, segment, row, 1);
+            callRow(f, entities, row, columns, DataIndices());
+        }
+    }
+}
+
+template <class... Terms>
+template <size_t k, class Columns>
+auto Query<Terms...>::segmentArgument(const Columns& columns)
+{
+    using Access = typename Argument<k>::Access;
+    constexpr size_t kFirst = firstPointer<k>();
+    if constexpr (Argument<k>::kSplit)
+        return [&]<size_t... kLane>(std::index_sequence<kLane...>)
+        {
+            return Lanes<Access>{{std::get<kFirst + kLane>(columns)...}};
+        }
+    (std::make_index_sequence<Argument<k>::kPointers>());
+    else return static_cast<Access*>(std::get<kFirst>(columns));
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callSegment(F& f, const Match& match, uint32_t segment,
+                                  uint32_t ordinal) const
+{
+    const Archetype& archetype = *match.archetype;
+    const uint32_t first = segment << archetype.segmentShift();
+    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    mark(match, segment, 0, rows);
+    const auto columns = columnPointers(match, first, DataIndices());
+    [&]<size_t... k>(std::index_sequence<k...>)
+    {
+        f(Segment{archetype.entities().data() + first, rows, ordinal},
+          segmentArgument<k>(columns)...);
+    }
+    (DataIndices());
+}
+
+template <class... Terms>
+template <class Visit>
+void Query<Terms...>::forSegments(Visit&& visit) const
+{
+    const IterationGuard guard(*m_iterating);
+    uint32_t ordinal = 0;
+    for (const Match& match : m_cache->matches())
+        for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+            if (segmentPasses(match, s))
+                visit(match, s, ordinal++);
+}
+
+template <class... Terms>
+template <class Visit>
+void Query<Terms...>::forSegmentsParallel(Visit&& visit) const
+{
+    std::vector<Task> tasks;
+    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s}); });
+    const IterationGuard guard(*m_iterating);
+    const auto count = static_cast<uint32_t>(tasks.size());
+    const auto run = [&](uint32_t i) { visit(*tasks[i].match, tasks[i].segment, i); };
+    if (count >= kInlineSegments)
+        return parallelFor(count, run);
+    for (uint32_t i = 0; i < count; ++i)
+        run(i);
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::eachSegment(F&& f) const
+{
+    forSegments([&](const Match& match, uint32_t segment, uint32_t ordinal) {
+        callSegment(f, match, segment, ordinal);
+    });
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::parallelEachSegment(F&& f) const
+{
+    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t ordinal) {
+        callSegment(f, match, segment, ordinal);
+    });
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::each(F&& f) const
+{
+    if constexpr (kChangedCount > 0) {
+        forSegments([&](const Match& match, uint32_t s, uint32_t) { callChanged(f, match, s); });
+        return;
+    }
+    // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
+    const IterationGuard guard(*m_iterating);
+    for (const Match& match : m_cache->matches()) {
+        const Archetype& archetype = *match.archetype;
+        const uint32_t rows = archetype.count();
+        for (uint32_t s = 0; !kReadOnly && s < archetype.segmentCount(); ++s)
+            mark(match, s, 0,
+                 std::min(archetype.segmentRows(), rows - s * archetype.segmentRows()));
+        for (uint32_t row = 0; row < rows; row += archetype.blockRows())
+            callRun(f, match, row, std::min(archetype.blockRows(), rows - row));
+    }
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::parallelEach(F&& f) const
+{
+    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
+        if constexpr (kChangedCount > 0) {
+            callChanged(f, match, segment);
+        } else {
+            const uint32_t rows = match.archetype->segmentRows();
+            const uint32_t first = segment * rows;
+            const uint32_t count = std::min(rows, match.archetype->count() - first);
+            mark(match, segment, 0, count);
+            callRun(f, match, first, count);
+        }
+    });
+}
+
+} // namespace penumbra::ecs

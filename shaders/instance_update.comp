@@ -1,0 +1,21 @@
+#version 460
+// instance_update: one invocation per changed instance. Transform and field -> the constants that every receiver uses.
+//   reads   changed, inputs [changedCount], fields [fieldCount]
+//   writes  instances [instanceCount] at the changed indices; denseRotations where kernel literal is in use
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/scene.glsl"
+
+layout(local_size_x = 16) in;
+layout(push_constant) uniform Push { uint changedCount; } push;
+
+void main()
+{
+    if (gl_GlobalInvocationID.x >= push.changedCount)
+        return;
+    const uint i = changed[gl_GlobalInvocationID.x];
+    const InstanceInput instance = inputs[gl_GlobalInvocationID.x];
+    const GpuInstance g = makeInstance(instance, fields[instance.field == kNoField ? 0u : instance.field]);
+    instances[i] = g;
+    if (frame.denseRotations != 0u)
+        denseRotations[i] = denseRotation(instanceRotation(g));
+}

@@ -1,0 +1,62 @@
+// Set 0, the same for every pass of a frame: what systems/gpu_scene.h owns. An array that kernels read with one index
+// for all lanes is bound as a texel buffer as well: on lavapipe that costs a third of a storage buffer.
+#include "shaders/shared/instance.h"
+#include "shaders/shared/transfer.h"
+
+layout(set = 0, binding = 0, scalar) uniform Frame { FrameConstants frame; };
+layout(set = 0, binding = 1, scalar) readonly buffer Inputs { InstanceInput inputs[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer Fields { FieldInput fields[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer Changed { uint changed[]; };
+layout(set = 0, binding = 4, scalar) buffer Instances { GpuInstance instances[]; };
+layout(set = 0, binding = 5) uniform samplerBuffer instanceTexels;
+layout(set = 0, binding = 6) uniform usamplerBuffer fieldTexels;
+layout(set = 0, binding = 7) uniform usamplerBuffer receiverTexels;
+layout(set = 0, binding = 8, scalar) readonly buffer Bounds { ClusterBounds bounds[]; };
+layout(set = 0, binding = 9, scalar) readonly buffer Clusters { SceneCluster clusters[]; };
+layout(set = 0, binding = 10, scalar) buffer Cull { CullResult cull; };
+layout(set = 0, binding = 11, scalar) buffer Visible { uint visible[]; };          // [visible] cluster
+layout(set = 0, binding = 12) uniform usamplerBuffer visibleTexels;
+layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][1 + kMaxClusterOccluders]
+layout(set = 0, binding = 14) uniform usamplerBuffer listTexels;
+layout(set = 0, binding = 15, scalar) writeonly buffer Radiance { vec4 radiance[]; };
+layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [instance] VkDrawIndexedIndirectCommand
+layout(set = 0, binding = 17, scalar) buffer DenseRotations { DenseRotation denseRotations[]; };
+layout(set = 0, binding = 18, scalar) readonly buffer FieldSamples { uvec4 fieldSamples[]; };
+layout(set = 0, binding = 19, scalar) readonly buffer Receivers { ReceiverTexels receivers[]; };
+
+const uint kListStride = 1u + kMaxClusterOccluders;
+
+GpuInstance loadInstance(uint instance)
+{
+    const int row = int(instance * kGpuInstanceTexels);
+    GpuInstance g;
+    g.fieldFromWorld0 = texelFetch(instanceTexels, row);
+    g.fieldFromWorld1 = texelFetch(instanceTexels, row + 1);
+    g.fieldFromWorld2 = texelFetch(instanceTexels, row + 2);
+    g.gamma0 = texelFetch(instanceTexels, row + 3);
+    g.gamma1beta = texelFetch(instanceTexels, row + 4);
+    g.beta = texelFetch(instanceTexels, row + 5);
+    g.alpha0 = texelFetch(instanceTexels, row + 6);
+    g.alpha1grid = texelFetch(instanceTexels, row + 7);
+    g.bandScale = texelFetch(instanceTexels, row + 8);
+    g.shells = texelFetch(instanceTexels, row + 9);
+    g.worldFromObject0 = texelFetch(instanceTexels, row + 10);
+    g.worldFromObject1 = texelFetch(instanceTexels, row + 11);
+    g.worldFromObject2 = texelFetch(instanceTexels, row + 12);
+    g.material = texelFetch(instanceTexels, row + 13);
+    g.material1 = texelFetch(instanceTexels, row + 14);
+    g.sphere = texelFetch(instanceTexels, row + 15);
+    return g; // rows that the caller does not use are not fetched: the compiler drops them
+}
+
+Receiver makeReceiver(GpuInstance g, uvec4 geometry)
+{
+    Receiver r;
+    r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, uintBitsToFloat(geometry.xyz));
+    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, unpackNormal(geometry.w)) *
+               (1.0 / g.material1.y);
+    r.mirror = reflect(normalize(r.position - frame.eye.xyz), r.normal);
+    r.glossFraction = g.material.w;
+    r.glossExponent = g.material1.x;
+    return r;
+}

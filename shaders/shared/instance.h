@@ -1,0 +1,224 @@
+// What a frame knows of an instance, a field, a cluster and itself: the structs that CPU and GPU share, and the maths that
+// turns a transform into the constants of the combine kernels. Layout: scalar; offsets checked in tests/systems.
+#ifndef PENUMBRA_SHADERS_SHARED_INSTANCE_H
+#define PENUMBRA_SHADERS_SHARED_INSTANCE_H
+#include "shaders/shared/field.h"
+PENUMBRA_BEGIN
+
+PENUMBRA_CONST uint kNoField = 0xffffffffu;
+PENUMBRA_CONST uint kClusterReceivers = 64u;    // receivers per cluster; a mesh's last cluster is padded to it
+PENUMBRA_CONST uint kMaxClusterOccluders = 32u; // list entries per cluster; farther ones are dropped and counted
+PENUMBRA_CONST uint kSortGroup = 16u;           // clusters per workgroup of entity_sort: one per lane
+PENUMBRA_CONST uint kGpuInstanceTexels = 16u;   // vec4 rows of a GpuInstance
+
+// Written by the CPU when the entity changed.
+struct InstanceInput {
+    vec3 position;       // of the object's origin, world, metres
+    float scale;         // uniform
+    vec4 rotation;       // quaternion x, y, z, w: world from object
+    vec3 albedo;         // linear Rec. 709
+    float glossFraction; // part of the reflectance in the Phong lobe
+    float glossExponent;
+    uint field;          // index of a FieldInput, kNoField: not an occluder
+    uint padding0;
+    uint padding1;
+};
+
+// One per field asset.
+struct FieldInput {
+    vec3 center;       // object space, metres
+    float radius;      // metres
+    vec4 bandScale;    // K of band 0..3
+    uint firstSample;  // in the samples of all fields
+    uint side;
+    uint shells;
+    float innerRadius; // bounding radii
+    float outerRadius; // bounding radii
+    uint padding0;
+    uint padding1;
+    uint padding2;
+};
+
+// Written by pass instance_update, read as rows of a texel buffer by the combine kernels and as per-instance vertex
+// attributes by pass raster.
+struct GpuInstance {
+    vec4 fieldFromWorld0; // rows of the map to bounding radii in the field's axes
+    vec4 fieldFromWorld1;
+    vec4 fieldFromWorld2;
+    vec4 gamma0;          // ShRotation world from object: cos gamma .xyz, sin gamma .x …
+    vec4 gamma1beta;      // … sin gamma .yz, cos beta .xy
+    vec4 beta;            // cos beta .z, sin beta .xyz
+    vec4 alpha0;          // cos alpha .xyz, sin alpha .x
+    vec4 alpha1grid;      // sin alpha .yz, bits of firstSample, bits of side
+    vec4 bandScale;
+    vec4 shells;          // shellScale, shellBias, lastShell, influence radius (world, metres; 0: not an occluder)
+    vec4 worldFromObject0;
+    vec4 worldFromObject1;
+    vec4 worldFromObject2;
+    vec4 material;        // albedo, glossFraction
+    vec4 material1;       // glossExponent, scale, 0, 0
+    vec4 sphere;          // of the field: centre and bounding radius, world, metres
+};
+
+// Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
+struct ClusterBounds {
+    vec4 sphere; // centre, radius
+    vec4 cone;   // axis, cutoff
+};
+
+// A cluster of an instance.
+struct SceneCluster {
+    uint instance;
+    uint bounds;        // index of ClusterBounds
+    uint firstReceiver; // in the receivers of all meshes
+    uint firstRadiance; // in the radiance buffer
+};
+
+// Header that passes cluster_cull and entity_sort fill for the passes after them.
+struct CullResult {
+    uint sortGroups[3];    // VkDispatchIndirectCommand of entity_sort
+    uint combineGroups[3]; // VkDispatchIndirectCommand of combine: one workgroup per visible cluster
+    uint pairs;            // cluster-occluder pairs that are combined
+    uint dropped;          // pairs beyond kMaxClusterOccluders
+};
+
+// Constants of one frame.
+struct FrameConstants {
+    mat4 clipFromWorld;
+    mat4 worldFromClip;
+    vec4 eye;            // world; w unused
+    vec4 frustum[6];     // planes, normals inwards, world
+    vec4 lightNodes[32]; // environment radiance at kShNodes times the node's weight; w unused
+    vec4 light[16];      // environment radiance in SH
+    uint clusterCount;
+    uint instanceCount;
+    uint denseRotations; // 1: instance_update writes the matrices of kernel literal too
+    float backgroundIntensity;
+};
+
+// A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band 1, 2, 3.
+struct DenseRotation {
+    float m[83];
+};
+
+// What a combine kernel needs of an occluder.
+struct FieldEntity {
+    vec4 fieldFromWorld0;
+    vec4 fieldFromWorld1;
+    vec4 fieldFromWorld2;
+    ShRotation rotation;
+    FieldGrid grid;
+    vec4 bandScale;
+};
+
+PENUMBRA_FN vec3 rotate(vec4 q, vec3 v)
+{
+    const vec3 u = vec3(q.x, q.y, q.z);
+    return v + 2.0f * cross(u, cross(u, v) + q.w * v);
+}
+
+PENUMBRA_FN mat3 rotationMatrix(vec4 q)
+{
+    return mat3(rotate(q, vec3(1.0f, 0.0f, 0.0f)), rotate(q, vec3(0.0f, 1.0f, 0.0f)), rotate(q, vec3(0.0f, 0.0f, 1.0f)));
+}
+
+PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
+{
+    const mat3 r = rotationMatrix(i.rotation); // columns: object axes in world
+    const vec3 center = i.position + i.scale * (r * f.center);
+    const float toRadii = 1.0f / (i.scale * f.radius);
+    const float octaves = log2(f.outerRadius / f.innerRadius);
+    const float shellScale = float(f.shells - 1u) / octaves;
+    const ShRotation s = shRotation(r);
+
+    GpuInstance g;
+    g.fieldFromWorld0 = toRadii * vec4(r[0], -dot(r[0], center));
+    g.fieldFromWorld1 = toRadii * vec4(r[1], -dot(r[1], center));
+    g.fieldFromWorld2 = toRadii * vec4(r[2], -dot(r[2], center));
+    g.gamma0 = vec4(s.gamma.c, s.gamma.s.x);
+    g.gamma1beta = vec4(s.gamma.s.y, s.gamma.s.z, s.beta.c.x, s.beta.c.y);
+    g.beta = vec4(s.beta.c.z, s.beta.s.x, s.beta.s.y, s.beta.s.z);
+    g.alpha0 = vec4(s.alpha.c, s.alpha.s.x);
+    g.alpha1grid = vec4(s.alpha.s.y, s.alpha.s.z, uintBitsToFloat(f.firstSample), uintBitsToFloat(f.side));
+    g.bandScale = f.bandScale;
+    g.shells = vec4(shellScale, -shellScale * log2(f.innerRadius), float(f.shells - 1u),
+                    i.field == kNoField ? 0.0f : i.scale * f.radius * f.outerRadius);
+    g.worldFromObject0 = vec4(i.scale * r[0][0], i.scale * r[1][0], i.scale * r[2][0], i.position.x);
+    g.worldFromObject1 = vec4(i.scale * r[0][1], i.scale * r[1][1], i.scale * r[2][1], i.position.y);
+    g.worldFromObject2 = vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
+    g.material = vec4(i.albedo, i.glossFraction);
+    g.material1 = vec4(i.glossExponent, i.scale, 0.0f, 0.0f);
+    g.sphere = vec4(center, i.scale * f.radius);
+    return g;
+}
+
+PENUMBRA_FN ShRotation instanceRotation(GpuInstance g)
+{
+    ShRotation r;
+    r.gamma.c = vec3(g.gamma0.x, g.gamma0.y, g.gamma0.z);
+    r.gamma.s = vec3(g.gamma0.w, g.gamma1beta.x, g.gamma1beta.y);
+    r.beta.c = vec3(g.gamma1beta.z, g.gamma1beta.w, g.beta.x);
+    r.beta.s = vec3(g.beta.y, g.beta.z, g.beta.w);
+    r.alpha.c = vec3(g.alpha0.x, g.alpha0.y, g.alpha0.z);
+    r.alpha.s = vec3(g.alpha0.w, g.alpha1grid.x, g.alpha1grid.y);
+    return r;
+}
+
+PENUMBRA_FN FieldEntity instanceField(GpuInstance g)
+{
+    FieldEntity e;
+    e.fieldFromWorld0 = g.fieldFromWorld0;
+    e.fieldFromWorld1 = g.fieldFromWorld1;
+    e.fieldFromWorld2 = g.fieldFromWorld2;
+    e.rotation = instanceRotation(g);
+    e.grid.firstSample = floatBitsToUint(g.alpha1grid.z);
+    e.grid.side = floatBitsToUint(g.alpha1grid.w);
+    e.grid.shellScale = g.shells.x;
+    e.grid.shellBias = g.shells.y;
+    e.grid.lastShell = g.shells.z;
+    e.bandScale = g.bandScale;
+    return e;
+}
+
+PENUMBRA_FN vec3 affine(vec4 row0, vec4 row1, vec4 row2, vec3 p)
+{
+    const vec4 h = vec4(p, 1.0f);
+    return vec3(dot(row0, h), dot(row1, h), dot(row2, h));
+}
+
+PENUMBRA_FN vec3 linear(vec4 row0, vec4 row1, vec4 row2, vec3 v)
+{
+    const vec4 h = vec4(v, 0.0f);
+    return vec3(dot(row0, h), dot(row1, h), dot(row2, h));
+}
+
+// The matrix of a rotation, column by column: the image of each basis function.
+PENUMBRA_FN DenseRotation denseRotation(ShRotation r)
+{
+    DenseRotation d;
+    for (int j = 1; j < 16; ++j) {
+        Sh4 unit;
+        for (int i = 0; i < 16; ++i)
+            unit.c[i] = i == j ? 1.0f : 0.0f;
+        const Sh4 image = shRotate(unit, r);
+        const int band = j < 4 ? 1 : (j < 9 ? 2 : 3);
+        const int first = band * band, width = 2 * band + 1;
+        const int base = band == 1 ? 0 : (band == 2 ? 9 : 34);
+        for (int i = 0; i < width; ++i)
+            d.m[base + i * width + (j - first)] = image.c[first + i];
+    }
+    return d;
+}
+
+PENUMBRA_END
+
+#ifdef __cplusplus
+static_assert(sizeof(penumbra::InstanceInput) == 64 && offsetof(penumbra::InstanceInput, albedo) == 32);
+static_assert(sizeof(penumbra::FieldInput) == 64 && offsetof(penumbra::FieldInput, firstSample) == 32);
+static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
+static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 160);
+static_assert(sizeof(penumbra::CullResult) == 32 && offsetof(penumbra::CullResult, combineGroups) == 12);
+static_assert(sizeof(penumbra::FrameConstants) == 1024 && offsetof(penumbra::FrameConstants, clusterCount) == 1008);
+static_assert(sizeof(penumbra::DenseRotation) == 332);
+#endif
+#endif

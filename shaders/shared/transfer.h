@@ -1,0 +1,89 @@
+// The receiver's side of a product: its self-visibility and its BRDF times cosine, the first factor T_p of Zhou et al.
+// 2005 Fig. 5, and what the product gives against the light.
+//   f(w) = (1 - g) max(0, n.w) / pi  +  g (e + 2) / (2 pi) max(0, r.w)^e max(0, n.w)
+// n normal, r mirror direction of the view, g gloss fraction, e Phong exponent. Reflected radiance = albedo times the
+// integral of L V f. The same f is ray-traced in demo/reference.
+#ifndef PENUMBRA_SHADERS_SHARED_TRANSFER_H
+#define PENUMBRA_SHADERS_SHARED_TRANSFER_H
+#include "shaders/shared/field.h"
+PENUMBRA_BEGIN
+
+// A receiver in memory: two uvec4. Vertex shaders read the position as an attribute, stride 32, offset 0.
+struct ReceiverTexels {
+    uvec4 geometry;       // bits of the position x, y, z (object space, metres), octahedral normal 2 x 16 bits
+    uvec4 selfVisibility; // 16 bytes, see assets/mesh_asset.h
+};
+
+struct Receiver {
+    vec3 position; // world, metres
+    vec3 normal;   // world, unit
+    vec3 mirror;   // world, unit: the view direction mirrored at the normal
+    float glossFraction;
+    float glossExponent;
+};
+
+PENUMBRA_FN uint packNormal(vec3 n)
+{
+    const vec2 uv = octahedralUv(n) * 65535.0f + vec2(0.5f);
+    return uint(uv.x) | (uint(uv.y) << 16u);
+}
+
+PENUMBRA_FN vec3 unpackNormal(uint bits)
+{
+    return octahedralDirection(vec2(float(int(bits & 0xffffu)), float(int(bits >> 16u))) * (1.0f / 65535.0f));
+}
+
+// Object space. `scale` is assets/mesh_asset.h's kSelfVisibilityScale.
+PENUMBRA_FN Sh4 selfVisibility(uvec4 bytes, float scale)
+{
+    return fieldVisibility(fieldSteps(bytes), vec4(scale, scale, scale, scale));
+}
+
+// max(0, n.w): bands 0..2; band 3 of the clamped cosine is 0 (Ramamoorthi and Hanrahan 2001, eq. 8).
+PENUMBRA_FN Sh4 cosineLobe(vec3 normal)
+{
+    return shZonal(normal, vec4(3.14159265f, 2.09439510f, 0.785398163f, 0.0f));
+}
+
+// (e + 2) / (2 pi) max(0, r.w)^e: zonal coefficients 2 pi times the integral of t^e P_l(t) over [0, 1], in closed form.
+PENUMBRA_FN Sh4 phongLobe(vec3 mirror, float e)
+{
+    const float n = e + 2.0f;
+    const vec4 scale = vec4(n / (e + 1.0f), 1.0f, 0.5f * n * (3.0f / (e + 3.0f) - 1.0f / (e + 1.0f)),
+                            0.5f * n * (5.0f / (e + 4.0f) - 3.0f / n));
+    return shZonal(mirror, scale);
+}
+
+// T in nodal form: the factors are multiplied node by node and never truncated.
+PENUMBRA_FN ShNodal transferNodal(Sh4 visibility, Receiver receiver)
+{
+    ShNodal t = shMultiply(shNodes(visibility), shNodes(cosineLobe(receiver.normal)));
+    const float diffuse = (1.0f - receiver.glossFraction) * 0.318309886f;
+    if (receiver.glossFraction > 0.0f) {
+        const ShNodal phong = shNodes(phongLobe(receiver.mirror, receiver.glossExponent));
+        for (int i = 0; i < 32; ++i)
+            t.v[i] *= diffuse + receiver.glossFraction * phong.v[i];
+    } else {
+        for (int i = 0; i < 32; ++i)
+            t.v[i] *= diffuse;
+    }
+    return t;
+}
+
+// T in SH, by triple products.
+PENUMBRA_FN Sh4 transferSh(Sh4 visibility, Receiver receiver)
+{
+    const Sh4 cosine = cosineLobe(receiver.normal);
+    Sh4 brdf;
+    for (int i = 0; i < 16; ++i)
+        brdf.c[i] = (1.0f - receiver.glossFraction) * 0.318309886f * cosine.c[i];
+    if (receiver.glossFraction > 0.0f) {
+        const Sh4 gloss = shProduct(phongLobe(receiver.mirror, receiver.glossExponent), cosine);
+        for (int i = 0; i < 16; ++i)
+            brdf.c[i] += receiver.glossFraction * gloss.c[i];
+    }
+    return shProduct(visibility, brdf);
+}
+
+PENUMBRA_END
+#endif

@@ -1,0 +1,66 @@
+// Components of a scene. Their names and fields are what scene files hold. Data only: systems/*.h say what happens to them.
+#pragma once
+
+#include "shaders/shared/interop.h"
+
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+namespace penumbra {
+
+// An asset in the AssetStore: an index that stays valid for the store's life.
+struct AssetHandle {
+    std::uint32_t index = 0xffffffff;
+    friend bool operator==(AssetHandle, AssetHandle) = default;
+};
+
+// Where the entity is: rotation, then uniform scale, then translation, to world space (to the parent's with Parent).
+// Written by: spawn, physics, articulation.  Read by: transforms, gather.
+struct Transform {
+    static constexpr std::string_view kName = "Transform";
+    static constexpr bool kRowChanges = true; // few objects move: gather reads only those
+    vec3 position{0};        // metres
+    float scale = 1;         // > 0
+    vec4 rotation{0, 0, 0, 1}; // unit quaternion x, y, z, w
+};
+static_assert(sizeof(Transform) == 32 && std::is_trivially_copyable_v<Transform>);
+
+// The entity is drawn, and its vertices receive light.  Written by: spawn.  Read by: scene build.
+struct MeshInstance {
+    static constexpr std::string_view kName = "MeshInstance";
+    AssetHandle asset;
+};
+
+// How the surface reflects; without it, the asset's own material.  Written by: spawn, editor.  Read by: gather.
+struct Material {
+    static constexpr std::string_view kName = "Material";
+    vec3 albedo{0.8f};       // linear Rec. 709
+    float glossFraction = 0; // part of the reflectance in the Phong lobe, 0..1
+    float glossExponent = 0; // Phong exponent, >= 0
+};
+
+// The entity blocks light by the field of this asset, scaled and turned as the entity.  Written by: spawn.
+// Read by: scene build.
+struct ShadowFieldOccluder {
+    static constexpr std::string_view kName = "ShadowFieldOccluder";
+    AssetHandle asset;
+};
+
+// The entity moves as a rigid body of the physics world.  Written by: spawn.  Read by: physics.
+struct RigidBody {
+    static constexpr std::string_view kName = "RigidBody";
+    std::uint64_t body = 0; // id in the PhysicsWorld
+};
+
+// What the picture is seen from.  Written by: spawn, input.  Read by: frame.
+struct Camera {
+    static constexpr std::string_view kName = "Camera";
+    vec3 target{0};             // world, metres
+    float distance = 5;         // of the eye from the target, metres
+    float yaw = 0, pitch = 0.4f; // radians; pitch > 0 looks down
+    float fieldOfView = 0.7f;   // vertical, radians
+    float near = 0.05f, far = 100;
+};
+
+} // namespace penumbra

@@ -1,0 +1,49 @@
+// One frame on the GPU. frame.cpp lists its passes and barriers in order; it records into the command buffer of whoever
+// owns the frame (our ring or a host's) and leaves the picture in `display`.
+#pragma once
+
+#include "runtime/vk/frame_ring.h"
+#include "runtime/vk/pipeline.h"
+#include "systems/frame_constants.h"
+#include "systems/gpu_scene.h"
+#include "systems/techniques/shadow_fields/kernel.h"
+
+namespace penumbra {
+
+// Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
+struct FramePasses {
+    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, raster, background, post;
+    [[nodiscard]] const Pipeline& combine(Kernel kernel) const
+    {
+        return kernel == Kernel::Literal ? combineLiteral : combineExact;
+    }
+};
+Result<FramePasses> createFramePasses(const Device& device);
+
+// Targets of one size.
+struct FrameTargets {
+    Image radiance; // RGBA16F, linear
+    Image depth;
+    Image display;  // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+    UniqueSampler sampler;
+    VkDescriptorSet postSet = VK_NULL_HANDLE;
+    DescriptorSets sets;
+};
+Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses& passes, VkExtent2D extent);
+
+struct FrameOptions {
+    Kernel kernel = Kernel::Exact;
+    bool combine = true;   // false: the radiance buffer is given from outside (reference, cpu-scalar)
+    float exposure = 1;
+};
+
+// Records everything from changed instances to `targets.display`.
+void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene, const FrameConstants& constants,
+                 const FrameOptions& options, const FrameTargets& targets);
+
+// The parts, for benchmarks that run one of them alone.
+void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene);
+void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, Kernel kernel);
+void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, const FrameTargets& targets);
+
+} // namespace penumbra

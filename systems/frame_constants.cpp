@@ -1,0 +1,71 @@
+#include "systems/frame_constants.h"
+
+#include "shaders/shared/environment.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace penumbra {
+
+View viewOf(const Camera& camera, float aspect)
+{
+    const vec3 back(std::cos(camera.pitch) * std::sin(camera.yaw), std::sin(camera.pitch),
+                    std::cos(camera.pitch) * std::cos(camera.yaw));
+    View view;
+    view.eye = camera.target + camera.distance * back;
+    view.clipFromWorld = glm::perspectiveRH_ZO(camera.fieldOfView, aspect, camera.near, camera.far) *
+                         glm::lookAtRH(view.eye, camera.target, vec3(0, 1, 0));
+    return view;
+}
+
+LightSh environmentLight(const Environment& environment, float intensity, bool ground)
+{
+    LightSh light = environment.sh4;
+    if (ground) {
+        light.fill(vec3(0));
+        for (std::uint32_t y = 0; y < environment.mapHeight; ++y) {
+            const double weight = equirectPixelSolidAngle(environment.mapWidth, environment.mapHeight, y);
+            const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(environment.mapHeight);
+            if (v >= 0.5f)
+                continue; // the centre of the row looks below the horizon
+            for (std::uint32_t x = 0; x < environment.mapWidth; ++x) {
+                const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(environment.mapWidth);
+                const Sh4 basis = shBasis(equirectDirection(vec2(u, v)));
+                const vec3 radiance = environment.map[static_cast<std::size_t>(y) * environment.mapWidth + x];
+                for (std::size_t k = 0; k < 16; ++k)
+                    light[k] += radiance * (basis.c[k] * static_cast<float>(weight));
+            }
+        }
+    }
+    for (vec3& coefficient : light)
+        coefficient *= intensity;
+    return light;
+}
+
+FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity)
+{
+    FrameConstants frame{};
+    frame.clipFromWorld = view.clipFromWorld;
+    frame.worldFromClip = glm::inverse(view.clipFromWorld);
+    frame.eye = vec4(view.eye, 1);
+    frame.backgroundIntensity = backgroundIntensity;
+
+    // Planes from the rows of the matrix (Gribb and Hartmann 2001), normalised so that distances are metres.
+    const mat4 rows = glm::transpose(view.clipFromWorld);
+    const vec4 planes[6] = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
+                            rows[3] - rows[1], rows[2],           rows[3] - rows[2]};
+    for (int i = 0; i < 6; ++i)
+        frame.frustum[i] = planes[i] / length(vec3(planes[i]));
+
+    for (int k = 0; k < 16; ++k)
+        frame.light[k] = vec4(light[static_cast<std::size_t>(k)], 0);
+    for (int n = 0; n < 32; ++n) {
+        const Sh4 basis = shBasis(vec3(kShNodes[n]));
+        vec3 radiance(0);
+        for (std::size_t k = 0; k < 16; ++k)
+            radiance += light[k] * basis.c[k];
+        frame.lightNodes[n] = vec4(radiance * kShNodes[n].w, 0);
+    }
+    return frame;
+}
+
+} // namespace penumbra

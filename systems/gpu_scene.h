@@ -1,0 +1,64 @@
+// The GPU's copy of a scene: static arrays per asset, what the passes pass on, and the descriptor set that all of them
+// share (bindings: shaders/scene.glsl). The frame updates only instances that changed.
+#pragma once
+
+#include "assets/environment.h"
+#include "runtime/vk/buffer.h"
+#include "runtime/vk/descriptors.h"
+#include "runtime/vk/device.h"
+#include "runtime/vk/image.h"
+#include "systems/scene_data.h"
+
+#include <span>
+#include <vector>
+
+namespace penumbra {
+
+// Set 0 of every pass.
+std::span<const Binding> sceneBindings();
+
+struct GpuSceneBuffers {
+    Buffer fields, instances, fieldSamples, receivers, indices, bounds, clusters;
+    Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations;
+    Image environmentMap;
+    UniqueSampler environmentSampler;
+};
+
+// What the CPU writes for one frame in flight.
+struct GpuSceneSlot {
+    Buffer frame;   // FrameConstants
+    Buffer inputs;  // [instanceCount] InstanceInput of the changed instances, packed
+    Buffer changed; // [instanceCount] their indices
+    VkDescriptorSet set = VK_NULL_HANDLE;
+};
+
+class GpuScene {
+public:
+    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, or a scene larger than the device's buffers.
+    static Result<GpuScene> create(const Device& device, SceneData data, const Environment& environment,
+                                   std::uint32_t framesInFlight);
+
+    // The instance moves or changes its material from the next frame on.
+    void setInstance(std::uint32_t index, const SceneInstance& instance);
+
+    // Writes what the frame of `slot` reads: constants and changed instances. Returns the number of changed ones.
+    std::uint32_t writeFrame(std::uint32_t slot, const FrameConstants& constants);
+
+    // All instances count as changed: after another kernel was chosen, which needs other constants.
+    void touchAll();
+
+    [[nodiscard]] const SceneData& data() const { return m_data; }
+    [[nodiscard]] const GpuSceneBuffers& buffers() const { return m_buffers; }
+    [[nodiscard]] VkDescriptorSet set(std::uint32_t slot) const { return m_slots[slot].set; }
+
+private:
+    SceneData m_data;
+    GpuSceneBuffers m_buffers;
+    DescriptorSets m_sets;
+    UniqueDescriptorSetLayout m_layout;
+    std::vector<GpuSceneSlot> m_slots;
+    std::vector<std::uint32_t> m_changed; // instances to upload, each once
+    std::vector<bool> m_isChanged;
+};
+
+} // namespace penumbra

@@ -1,0 +1,68 @@
+#include "assets/json_reader.h"
+
+#include <gtest/gtest.h>
+
+namespace penumbra {
+
+TEST(JsonReader, DepthIsBoundedBeforeParsing)
+{
+    const auto nested = [](int depth) {
+        return "{\"a\":" + std::string(static_cast<std::size_t>(depth - 1), '[') +
+               std::string(static_cast<std::size_t>(depth - 1), ']') + "}";
+    };
+    EXPECT_TRUE(parseJson(nested(kMaxJsonDepth), 1 << 20));
+    EXPECT_FALSE(parseJson(nested(kMaxJsonDepth + 1), 1 << 20));
+    EXPECT_FALSE(parseJson(nested(60000), 1 << 20));
+}
+
+TEST(JsonReader, BracketsInStringsDoNotCount)
+{
+    const std::string text = "{\"a\":\"\\\"" + std::string(1000, '[') + "\"}";
+    EXPECT_TRUE(parseJson(text, 1 << 20));
+}
+
+TEST(JsonReader, RefusesWhatIsNotAnObject)
+{
+    for (const char* text : {"", "[]", "1", "{", "{\"a\":}", "\xff\xfe"})
+        EXPECT_FALSE(parseJson(text, 100)) << text;
+    EXPECT_FALSE(parseJson("{\"a\": 1}", 5)); // larger than allowed
+}
+
+TEST(JsonReader, FirstProblemSticksAndNamesItsPlace)
+{
+    const auto document = parseJson(R"({"a":[{"b":-1}], "c":"text"})", 1000);
+    ASSERT_TRUE(document);
+    JsonProblem problem;
+    const JsonReader root(*document, "file", problem);
+    EXPECT_EQ(root.text("c"), "text");
+    EXPECT_FALSE(problem);
+    EXPECT_EQ(root.member("a").element(0).count("b", 10), 0u);
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->message, "file.a[0].b is not a whole number from 0 to 10");
+    EXPECT_EQ(root.member("zzz").element(3).number("q", 0, 1), 0.0f);
+    EXPECT_EQ(problem->message, "file.a[0].b is not a whole number from 0 to 10");
+}
+
+TEST(JsonReader, RangesAndTypes)
+{
+    const auto document =
+        parseJson(R"({"n":1e999, "f":1.5, "big":5, "list":[1,2,3], "t":true})", 1000);
+    ASSERT_FALSE(document); // nlohmann refuses numbers beyond double
+    const auto good = parseJson(R"({"f":1.5, "big":5, "list":[1,2,3], "t":true})", 1000);
+    const auto refuses = [&](auto&& read) {
+        JsonProblem problem;
+        read(JsonReader(*good, "x", problem));
+        return problem.has_value();
+    };
+    EXPECT_TRUE(refuses([](const JsonReader& r) { return r.count("f", 10); }));
+    EXPECT_TRUE(refuses([](const JsonReader& r) { return r.count("big", 4); }));
+    EXPECT_FALSE(refuses([](const JsonReader& r) { return r.count("big", 5); }));
+    EXPECT_TRUE(refuses([](const JsonReader& r) { return r.number("f", 2, 3); }));
+    EXPECT_FALSE(refuses([](const JsonReader& r) { return r.number("big", 2, 5); }));
+    EXPECT_TRUE(refuses([](const JsonReader& r) { return r.member("list").length(2); }));
+    EXPECT_TRUE(
+        refuses([](const JsonReader& r) { return r.member("list").element(3).asCount(9); }));
+    EXPECT_TRUE(refuses([](const JsonReader& r) { return r.text("t"); }));
+}
+
+} // namespace penumbra
