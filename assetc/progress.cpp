@@ -8,7 +8,9 @@ namespace penumbra {
 
 using Clock = std::chrono::steady_clock;
 
-Progress::Progress(std::string title) : m_title(std::move(title)), m_terminal(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::string title)
+    : m_title(std::move(title)), m_terminal(::isatty(STDERR_FILENO) == 1)
+{}
 
 Progress::~Progress()
 {
@@ -32,7 +34,8 @@ void Progress::step(std::uint64_t count)
     if (!m_terminal)
         return;
     const std::unique_lock lock(m_mutex, std::try_to_lock);
-    constexpr auto kInterval = std::chrono::milliseconds(80); // a terminal needs no more than 12 lines a second
+    constexpr auto kInterval =
+        std::chrono::milliseconds(80); // a terminal needs no more than 12 lines a second
     if (lock && Clock::now() - m_drawn > kInterval)
         draw(done);
 }
@@ -42,7 +45,8 @@ void Progress::draw(std::uint64_t done)
     m_drawn = Clock::now();
     const double seconds = std::chrono::duration<double>(m_drawn - m_start).count();
     const double fraction = static_cast<double>(done) / static_cast<double>(m_steps);
-    std::fprintf(stderr, "\r\033[K%s  %s  %3.0f %%", m_title.c_str(), m_stage.c_str(), 100 * fraction);
+    std::fprintf(stderr, "\r\033[K%s  %s  %3.0f %%", m_title.c_str(), m_stage.c_str(),
+                 100 * fraction);
     if (done > 0)
         std::fprintf(stderr, "  %.1f s left", seconds * (1 - fraction) / fraction);
     std::fflush(stderr);

@@ -51,25 +51,25 @@ JsonReader JsonReader::member(const char* key) const
 {
     const std::string place = m_place + "." + key;
     if (!m_value)
-        return {nullptr, place, *m_problem};
+        return {nullptr, place, *m_problems};
     const auto found = m_value->is_object() ? m_value->find(key) : m_value->end();
     if (found == m_value->end()) {
         refuse(fmt::format("has no \"{}\"", key));
-        return {nullptr, place, *m_problem};
+        return {nullptr, place, *m_problems};
     }
-    return {&*found, place, *m_problem};
+    return {&*found, place, *m_problems};
 }
 
 JsonReader JsonReader::element(std::size_t index) const
 {
     const std::string place = fmt::format("{}[{}]", m_place, index);
     if (!m_value)
-        return {nullptr, place, *m_problem};
+        return {nullptr, place, *m_problems};
     if (!m_value->is_array() || index >= m_value->size()) {
         refuse(fmt::format("has no element {}", index));
-        return {nullptr, place, *m_problem};
+        return {nullptr, place, *m_problems};
     }
-    return {&(*m_value)[index], place, *m_problem};
+    return {&(*m_value)[index], place, *m_problems};
 }
 
 bool JsonReader::has(const char* key) const
@@ -139,8 +139,7 @@ std::string JsonReader::text(const char* key) const
 
 void JsonReader::refuse(const std::string& what) const
 {
-    if (!*m_problem)
-        *m_problem = Error{m_place + " " + what};
+    m_problems->push_back({m_place + " " + what});
 }
 
 } // namespace penumbra

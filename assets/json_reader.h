@@ -12,9 +12,9 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace penumbra {
 
@@ -25,12 +25,12 @@ constexpr int kMaxJsonDepth = 64;
 // object.
 Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes);
 
-using JsonProblem = std::optional<Error>;
+using JsonProblems = std::vector<Error>;
 
 class JsonReader {
 public:
-    JsonReader(const nlohmann::json& value, std::string place, JsonProblem& problem)
-        : JsonReader(&value, std::move(place), problem)
+    JsonReader(const nlohmann::json& value, std::string place, JsonProblems& problems)
+        : JsonReader(&value, std::move(place), problems)
     {}
 
     // A required member of an object, or element of an array.
@@ -49,17 +49,17 @@ public:
     [[nodiscard]] float number(const char* key, float min, float max) const;
     [[nodiscard]] std::string text(const char* key) const;
 
-    // Records a problem at this place unless there is one already.
+    // Records a problem at this place.
     void refuse(const std::string& what) const;
 
 private:
-    JsonReader(const nlohmann::json* value, std::string place, JsonProblem& problem)
-        : m_value(value), m_place(std::move(place)), m_problem(&problem)
+    JsonReader(const nlohmann::json* value, std::string place, JsonProblems& problems)
+        : m_value(value), m_place(std::move(place)), m_problems(&problems)
     {}
 
-    const nlohmann::json* m_value; // null after a problem
+    const nlohmann::json* m_value; // null where missing
     std::string m_place;
-    JsonProblem* m_problem;
+    JsonProblems* m_problems;
 };
 
 } // namespace penumbra

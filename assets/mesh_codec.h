@@ -25,6 +25,9 @@ Result<std::vector<std::byte>> encodeMeshAsset(const MeshAsset& mesh,
                                                const MeshEncodeOptions& options = {});
 Result<MeshAsset> decodeMeshAsset(std::span<const std::byte> bytes);
 
+// All problems that decoding meets, each with its place; none for a valid asset.
+std::vector<Error> checkMeshAsset(std::span<const std::byte> bytes);
+
 // Moves positions and normals to where encoding will put them (up to rounding of the last bit), so
 // that what is baked from a mesh fits what is shipped.
 Result<void> quantizeMesh(MeshAsset& mesh, const MeshEncodeOptions& options = {});

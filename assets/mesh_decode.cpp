@@ -96,22 +96,28 @@ ShadowField readFieldHead(const JsonReader& extension)
     return field;
 }
 
-Result<ShadowField> readField(const JsonReader& root, const JsonReader& extension,
-                              std::span<const std::byte> bin, const JsonProblem& problem)
+std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& extension, std::span<const std::byte> bin,
+                                     JsonProblems& problems)
 {
+    const std::size_t before = problems.size();
     ShadowField field = readFieldHead(extension);
     const std::uint64_t byteLength = extension.count("byteLength", kMaxFieldBytes);
     const auto payload = readView(root, extension.count("bufferView", kMaxViews), bin);
-    if (problem)
-        return *problem;
-    if (const auto head = validateFieldHead(field); !head)
-        return head.error();
-    if (byteLength != fieldTexelBytes(field))
-        return Error{fmt::format("field: byteLength {}, the shells need {}", byteLength,
-                                 fieldTexelBytes(field))};
+    if (problems.size() > before)
+        return std::nullopt;
+    if (const auto head = validateFieldHead(field); !head) {
+        problems.push_back(head.error());
+        return std::nullopt;
+    }
+    if (byteLength != fieldTexelBytes(field)) {
+        extension.refuse(fmt::format("has byteLength {}, the shells need {}", byteLength, fieldTexelBytes(field)));
+        return std::nullopt;
+    }
     auto texels = decodeFieldTexels(field, payload);
-    if (!texels)
-        return texels.error();
+    if (!texels) {
+        problems.push_back(texels.error());
+        return std::nullopt;
+    }
     field.texels = std::move(*texels);
     return field;
 }
@@ -134,57 +140,58 @@ MeshMaterial readMaterial(const JsonReader& root, const JsonReader& primitive)
     return material;
 }
 
-// Geometry out of the Draco payload, whose counts must be those of the accessors.
-Result<void> readGeometry(const JsonReader& root, const JsonReader& primitive,
-                          std::span<const std::byte> bin, const JsonProblem& problem,
-                          MeshAsset& mesh)
+// Where the geometry lies: read from the JSON, trusted by nobody.
+struct GeometryHead {
+    std::span<const std::byte> payload;
+    std::uint64_t vertexCount = 0, indexCount = 0; // of the accessors
+    std::uint32_t position = 0, normal = 0;        // Draco attribute ids
+    std::array<std::uint32_t, 4> selfVisibility{};
+};
+
+GeometryHead readGeometryHead(const JsonReader& root, const JsonReader& primitive, std::span<const std::byte> bin)
 {
     const JsonReader compressed = primitive.member("extensions").member(kDracoExtension);
     const JsonReader ids = compressed.member("attributes");
-    const JsonReader attributes = primitive.member("attributes");
-    const auto idOf = [&](const char* name) {
-        return static_cast<std::uint32_t>(ids.count(name, kMaxViews));
-    };
+    const auto idOf = [&](const char* name) { return static_cast<std::uint32_t>(ids.count(name, kMaxViews)); };
     const auto countOf = [&](const JsonReader& accessor) {
-        return root.member("accessors")
-            .element(accessor.asCount(kMaxViews))
-            .count("count", kMaxMeshTriangles * 3);
+        return root.member("accessors").element(accessor.asCount(kMaxViews)).count("count", kMaxMeshTriangles * 3);
     };
-    const auto payload = readView(root, compressed.count("bufferView", kMaxViews), bin);
-    const std::uint64_t vertexCount = countOf(attributes.member("POSITION"));
-    const std::uint64_t indexCount = countOf(primitive.member("indices"));
-    const std::uint32_t position = idOf("POSITION");
-    const std::uint32_t normal = idOf("NORMAL");
-    std::array<std::uint32_t, 4> selfVisibility{};
+    GeometryHead head;
+    head.payload = readView(root, compressed.count("bufferView", kMaxViews), bin);
+    head.vertexCount = countOf(primitive.member("attributes").member("POSITION"));
+    head.indexCount = countOf(primitive.member("indices"));
+    head.position = idOf("POSITION");
+    head.normal = idOf("NORMAL");
     for (std::size_t part = 0; part < 4; ++part)
-        selfVisibility[part] = idOf(kSelfVisibilityNames[part]);
-    if (problem)
-        return *problem;
+        head.selfVisibility[part] = idOf(kSelfVisibilityNames[part]);
+    return head;
+}
 
-    const Result<DracoMesh> draco = DracoMesh::decode(payload);
+// Geometry out of the Draco payload, whose counts must be those of the accessors.
+Result<void> readGeometry(const GeometryHead& head, MeshAsset& mesh)
+{
+    const Result<DracoMesh> draco = DracoMesh::decode(head.payload);
     if (!draco)
         return draco.error();
     mesh.indices = draco->indices();
-    if (draco->vertexCount() != vertexCount || mesh.indices.size() != indexCount)
-        return Error{
-            fmt::format("Draco payload has {} vertices and {} indices, its accessors {} and {}",
-                        draco->vertexCount(), mesh.indices.size(), vertexCount, indexCount)};
-    const auto positions = draco->floats(position, 3);
+    const std::size_t vertexCount = draco->vertexCount();
+    if (vertexCount != head.vertexCount || mesh.indices.size() != head.indexCount)
+        return Error{fmt::format("Draco payload has {} vertices and {} indices, its accessors {} and {}", vertexCount,
+                                 mesh.indices.size(), head.vertexCount, head.indexCount)};
+    const auto positions = draco->floats(head.position, 3);
     if (!positions)
         return positions.error();
-    const auto normals = draco->floats(normal, 3);
+    const auto normals = draco->floats(head.normal, 3);
     if (!normals)
         return normals.error();
     mesh.positions.resize(vertexCount);
     mesh.normals.resize(vertexCount);
     std::memcpy(mesh.positions.data(), positions->data(), positions->size() * sizeof(float));
-    for (std::size_t i = 0; i < vertexCount;
-         ++i) // a zero normal becomes NaN, which validateMesh refuses
-        mesh.normals[i] =
-            normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
+    for (std::size_t i = 0; i < vertexCount; ++i) // a zero normal becomes NaN, which validateMesh refuses
+        mesh.normals[i] = normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
     mesh.selfVisibility.resize(vertexCount);
     for (std::size_t part = 0; part < 4; ++part) {
-        const auto quarter = draco->bytes(selfVisibility[part], 4);
+        const auto quarter = draco->bytes(head.selfVisibility[part], 4);
         if (!quarter)
             return quarter.error();
         for (std::size_t i = 0; i < vertexCount; ++i)
@@ -193,60 +200,80 @@ Result<void> readGeometry(const JsonReader& root, const JsonReader& primitive,
     return {};
 }
 
-Result<MeshAsset> decode(std::span<const std::byte> bytes)
+void readDocument(const nlohmann::json& document, std::span<const std::byte> bin, MeshAsset& mesh,
+                  JsonProblems& problems)
 {
-    if (bytes.size() > kMaxMeshAssetBytes)
-        return Error{fmt::format("{} bytes, more than {}", bytes.size(), kMaxMeshAssetBytes)};
-    const Result<GlbView> glb = readGlb(bytes);
-    if (!glb)
-        return glb.error();
-    const auto document = parseJson(glb->json, kMaxJsonBytes);
-    if (!document)
-        return document.error();
-
-    JsonProblem problem;
-    const JsonReader root(*document, "gltf", problem);
+    const JsonReader root(document, "gltf", problems);
     const JsonReader source = root.member("meshes").element(0);
-    if (!problem && !(source.has("extensions") && source.member("extensions").has(kFieldExtension)))
-        return Error{fmt::format(
-            "{} on the mesh is missing: not a compiled asset; compile it with assetc bake",
-            kFieldExtension)};
+    if (!source.has("extensions") || !source.member("extensions").has(kFieldExtension)) {
+        source.refuse(fmt::format("has no {}: not a compiled asset; compile it with assetc bake", kFieldExtension));
+        return;
+    }
     const JsonReader extension = source.member("extensions").member(kFieldExtension);
     checkVersion(extension);
+    if (!problems.empty())
+        return; // another version may mean anything by the rest
     const float scale = extension.number("selfVisibilityScale", 0, 1);
-    if (!problem && std::abs(scale - kSelfVisibilityScale) > 1e-6f)
-        extension.refuse(fmt::format("has selfVisibilityScale {}, version 1 has {}", scale,
-                                     kSelfVisibilityScale));
+    if (std::abs(scale - kSelfVisibilityScale) > 1e-6f)
+        extension.refuse(fmt::format("has selfVisibilityScale {}, version 1 has {}", scale, kSelfVisibilityScale));
 
-    MeshAsset mesh;
     mesh.name = source.has("name") ? source.text("name") : "";
     const JsonReader primitive = source.member("primitives").element(0);
     mesh.material = readMaterial(root, primitive);
-    if (const auto geometry = readGeometry(root, primitive, glb->bin, problem, mesh); !geometry)
-        return geometry.error();
-    if (extension.has("bufferView")) {
-        auto field = readField(root, extension, glb->bin, problem);
-        if (!field)
-            return field.error();
-        mesh.field = std::move(*field);
+    const std::size_t before = problems.size();
+    const GeometryHead head = readGeometryHead(root, primitive, bin);
+    if (problems.size() == before)
+        if (const auto geometry = readGeometry(head, mesh); !geometry)
+            problems.push_back(geometry.error());
+    if (extension.has("bufferView"))
+        mesh.field = readField(root, extension, bin, problems);
+}
+
+// An asset and no problems, or at least one problem.
+std::optional<MeshAsset> decode(std::span<const std::byte> bytes, JsonProblems& problems)
+{
+    const auto refuse = [&](Error error) {
+        problems.push_back(std::move(error));
+        return std::nullopt;
+    };
+    try {
+        if (bytes.size() > kMaxMeshAssetBytes)
+            return refuse({fmt::format("{} bytes, more than {}", bytes.size(), kMaxMeshAssetBytes)});
+        const Result<GlbView> glb = readGlb(bytes);
+        if (!glb)
+            return refuse(glb.error());
+        const auto document = parseJson(glb->json, kMaxJsonBytes);
+        if (!document)
+            return refuse(document.error());
+        std::optional<MeshAsset> mesh(std::in_place);
+        readDocument(*document, glb->bin, *mesh, problems);
+        if (!problems.empty())
+            return std::nullopt;
+        if (const auto valid = validateMesh(*mesh); !valid)
+            return refuse(valid.error());
+        updateDerived(*mesh);
+        return mesh;
+    } catch (const std::exception& exception) { // out of memory, or a library's
+        return refuse({fmt::format("cannot decode: {}", exception.what())});
     }
-    if (problem)
-        return *problem;
-    if (const auto valid = validateMesh(mesh); !valid)
-        return valid.error();
-    updateDerived(mesh);
-    return mesh;
 }
 
 } // namespace
 
 Result<MeshAsset> decodeMeshAsset(std::span<const std::byte> bytes)
 {
-    try {
-        return decode(bytes);
-    } catch (const std::exception& exception) { // out of memory, or a library's
-        return Error{fmt::format("cannot decode: {}", exception.what())};
-    }
+    JsonProblems problems;
+    std::optional<MeshAsset> mesh = decode(bytes, problems);
+    if (!mesh)
+        return problems.front();
+    return std::move(*mesh);
+}
+
+std::vector<Error> checkMeshAsset(std::span<const std::byte> bytes)
+{
+    JsonProblems problems;
+    static_cast<void>(decode(bytes, problems));
+    return problems;
 }
 
 } // namespace penumbra

@@ -1,19 +1,13 @@
 // Components of a scene. Their names and fields are what scene files hold. Data only: systems/*.h say what happens to them.
 #pragma once
 
-#include "shaders/shared/interop.h"
+#include "assets/asset_store.h"
 
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
 
 namespace penumbra {
-
-// An asset in the AssetStore: an index that stays valid for the store's life.
-struct AssetHandle {
-    std::uint32_t index = 0xffffffff;
-    friend bool operator==(AssetHandle, AssetHandle) = default;
-};
 
 // Where the entity is: rotation, then uniform scale, then translation, to world space (to the parent's with Parent).
 // Written by: spawn, physics, articulation.  Read by: transforms, gather.

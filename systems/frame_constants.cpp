@@ -1,7 +1,6 @@
 #include "systems/frame_constants.h"
 
-#include "shaders/shared/environment.h"
-
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace penumbra {
@@ -17,28 +16,22 @@ View viewOf(const Camera& camera, float aspect)
     return view;
 }
 
-LightSh environmentLight(const Environment& environment, float intensity, bool ground)
+LightSh environmentLight(const Environment& environment, float intensity)
 {
     LightSh light = environment.sh4;
-    if (ground) {
-        light.fill(vec3(0));
-        for (std::uint32_t y = 0; y < environment.mapHeight; ++y) {
-            const double weight = equirectPixelSolidAngle(environment.mapWidth, environment.mapHeight, y);
-            const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(environment.mapHeight);
-            if (v >= 0.5f)
-                continue; // the centre of the row looks below the horizon
-            for (std::uint32_t x = 0; x < environment.mapWidth; ++x) {
-                const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(environment.mapWidth);
-                const Sh4 basis = shBasis(equirectDirection(vec2(u, v)));
-                const vec3 radiance = environment.map[static_cast<std::size_t>(y) * environment.mapWidth + x];
-                for (std::size_t k = 0; k < 16; ++k)
-                    light[k] += radiance * (basis.c[k] * static_cast<float>(weight));
-            }
-        }
-    }
     for (vec3& coefficient : light)
         coefficient *= intensity;
     return light;
+}
+
+Environment aboveGround(const Environment& environment)
+{
+    std::vector<vec3> map = environment.map;
+    const std::size_t firstBelow = (environment.mapHeight + 1) / 2; // row whose centre looks below the horizon
+    std::fill(map.begin() + static_cast<std::ptrdiff_t>(firstBelow * environment.mapWidth), map.end(), vec3(0));
+    Environment clipped = makeEnvironment(environment.mapWidth, environment.mapHeight, std::move(map));
+    clipped.statistics = environment.statistics;
+    return clipped;
 }
 
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity)

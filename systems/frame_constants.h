@@ -14,11 +14,13 @@ struct View {
 
 View viewOf(const Camera& camera, float aspect);
 
-// Light that reaches the scene, in SH of order 4. With `ground`, the half-space y < 0 is solid and dark: directions
-// below the horizon are blocked for every receiver, exactly, by clipping the map before the projection. The product of
-// the plane's occlusion and the light is so precomputed once, for any number of receivers above the plane.
+// Radiance in SH of order 4, times an intensity.
 using LightSh = std::array<vec3, 16>;
-LightSh environmentLight(const Environment& environment, float intensity, bool ground);
+LightSh environmentLight(const Environment& environment, float intensity);
+
+// The environment above solid, dark ground at y = 0: map and SH without the directions below the horizon. The product of
+// the ground's occlusion and the light is so computed once, exactly, for all receivers above the plane.
+Environment aboveGround(const Environment& environment);
 
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity);
 

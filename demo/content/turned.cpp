@@ -27,7 +27,7 @@ ContentMesh makeChessPawn()
 
 ContentMesh makeBowlingPin()
 {
-    // Diameter at height, inches: USBC Equipment Specifications, figure "bowling pin".
+    // Diameter at height, inches: as the USBC specifies a ten-pin.
     constexpr std::array<vec2, 13> kPin{
         vec2(2.828f, 0.75f),  vec2(3.906f, 2.25f),   vec2(4.510f, 3.375f), vec2(4.766f, 4.5f),
         vec2(4.563f, 5.875f), vec2(3.703f, 7.25f),   vec2(2.472f, 8.625f), vec2(1.965f, 9.375f),

@@ -128,13 +128,16 @@ uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
 {
     const uint32_t row = count();
     const auto added = static_cast<uint32_t>(entities.size());
-    if (row + added > m_blocks.size() << m_blockShift || (row & (segmentRows() - 1)) == 0 ||
-        added > 1)
-        reserve(row + added);
-    if (added == 1)
+    if (added == 1) {
+        const bool newSegment = (row & (segmentRows() - 1)) == 0;
+        if (newSegment || row == m_blocks.size() << m_blockShift)
+            reserve(row + 1);
         m_entities.push_back(entities[0]);
-    else
-        m_entities.insert(m_entities.end(), entities.begin(), entities.end());
+        markStructural(row, stamp);
+        return row;
+    }
+    reserve(row + added);
+    m_entities.insert(m_entities.end(), entities.begin(), entities.end());
     markStructural(row, added, stamp);
     return row;
 }
@@ -147,8 +150,10 @@ void Archetype::markStructural(uint32_t row, uint32_t added, Stamp stamp)
         for (uint32_t column = 0; column < m_columns.size(); ++column)
             if (m_columns[column].lane == 0)
                 markRows(column, row >> m_segmentShift, first, length, stamp);
+        m_stampedSegment = row >> m_segmentShift;
         row += length;
     }
+    m_stampedVersion = stamp.version;
 }
 
 Entity Archetype::removeRow(uint32_t row, Stamp stamp)
@@ -160,7 +165,7 @@ Entity Archetype::removeRow(uint32_t row, Stamp stamp)
         m_entities[row] = moved;
         for (uint32_t column = 0; column < m_columns.size(); ++column)
             copyValues(at(column, row), 0, at(column, last), 0, 1, m_columns[column].bytes);
-        markStructural(row, 1, stamp);
+        markStructural(row, stamp);
     }
     m_entities.pop_back();
     return moved;
@@ -176,7 +181,7 @@ void Archetype::copyRow(uint32_t row, const Archetype& source, uint32_t sourceRo
 }
 
 void Archetype::copyRows(uint32_t row, const Archetype& source,
-                         std::span<const std::pair<uint32_t, uint32_t>> sourceRows)
+                         std::span<const uint32_t> sourceRows)
 {
     for (uint32_t column = 0; column < m_columns.size(); ++column) {
         const Column& c = m_columns[column];
@@ -184,7 +189,7 @@ void Archetype::copyRows(uint32_t row, const Archetype& source,
         if (from < 0)
             continue;
         for (uint32_t i = 0; i < sourceRows.size(); ++i)
-            copyValues(at(column, row + i), 0, source.at(from + c.lane, sourceRows[i].first), 0, 1,
+            copyValues(at(column, row + i), 0, source.at(from + c.lane, sourceRows[i]), 0, 1,
                        c.bytes);
     }
 }
@@ -196,6 +201,18 @@ void Archetype::read(ComponentId id, uint32_t row, void* value) const
         const uint32_t column = m_columnOf[id] + lane;
         const uint32_t bytes = m_columns[column].bytes;
         std::memcpy(static_cast<std::byte*>(value) + size_t{lane} * bytes, at(column, row), bytes);
+    }
+}
+
+void Archetype::write(ComponentId id, uint32_t row, const void* value)
+{
+    const auto* source = static_cast<const std::byte*>(value);
+    for (int32_t column = m_columnOf[id];
+         column >= 0 && column < static_cast<int32_t>(m_columns.size()) &&
+         m_columns[column].component == id;
+         ++column) {
+        copyValues(at(column, row), 0, source, 0, 1, m_columns[column].bytes);
+        source += m_columns[column].bytes;
     }
 }
 

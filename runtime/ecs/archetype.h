@@ -18,7 +18,6 @@
 
 #include <memory>
 #include <new>
-#include <utility>
 
 namespace penumbra::ecs {
 
@@ -69,15 +68,13 @@ public:
     Entity removeRow(uint32_t row, Stamp stamp);
     // The values of the components that both have.
     void copyRow(uint32_t row, const Archetype& source, uint32_t sourceRow);
-    // rows [row, row + sourceRows.size()), column by column; `second` of each pair is not looked
-    // at.
-    void copyRows(uint32_t row, const Archetype& source,
-                  std::span<const std::pair<uint32_t, uint32_t>> sourceRows);
+    // The same for rows [row, row + sourceRows.size()), column by column.
+    void copyRows(uint32_t row, const Archetype& source, std::span<const uint32_t> sourceRows);
     void trim(); // gives back blocks without rows
 
     // Whole values by type, whatever their lanes. Writing does not mark.
     void read(ComponentId id, uint32_t row, void* value) const;
-    void write(ComponentId id, uint32_t row, const void* value) { fill(id, row, 1, value, 0); }
+    void write(ComponentId id, uint32_t row, const void* value);
     // rows [row, row + count) from values `stride` bytes apart; stride 0 repeats one value.
     void fill(ComponentId id, uint32_t row, uint32_t count, const void* values, size_t stride);
 
@@ -132,6 +129,16 @@ private:
     void reserve(uint32_t rows);
     void growFirstBlock();
     void markStructural(uint32_t row, uint32_t count, Stamp stamp);
+    // The same for one row. Rows come and go one after the other in one segment: if all its columns
+    // have the version already, only the row bits are left to set.
+    void markStructural(uint32_t row, Stamp stamp)
+    {
+        const uint32_t segment = row >> m_segmentShift;
+        if (segment != m_stampedSegment || stamp.version != m_stampedVersion)
+            return markStructural(row, 1, stamp);
+        for (RowChanges& changes : m_rowChanges)
+            changes.mark(segment, row & (segmentRows() - 1));
+    }
     void touch(uint32_t column, uint32_t segment, Stamp stamp)
     {
         uint64_t& version = m_versions[size_t{segment} * m_columns.size() + column];
@@ -155,6 +162,8 @@ private:
     uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
     uint32_t m_segmentShift = 0;
     size_t m_blockBytes = 0;
+    uint32_t m_stampedSegment = kNone; // markStructural's last
+    uint64_t m_stampedVersion = 0;
 };
 
 } // namespace penumbra::ecs

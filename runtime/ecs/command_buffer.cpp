@@ -5,7 +5,7 @@ namespace penumbra::ecs {
 void CommandBuffer::record(Entity entity, ComponentId id, Kind kind, const void* value,
                            size_t bytes)
 {
-    m_ops.push_back({entity, id, kind, static_cast<uint32_t>(m_values.size())});
+    m_ops.emplace_back(entity, static_cast<uint32_t>(m_values.size()), id, kind);
     if (bytes > 0) {
         const auto* source = static_cast<const std::byte*>(value);
         m_values.insert(m_values.end(), source, source + bytes);

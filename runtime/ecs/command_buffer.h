@@ -42,12 +42,12 @@ public:
     template <class... Ts>
     Entity create(const Ts&... values)
     {
-        const Entity entity{m_created++, m_tag << 19 | (m_epoch & 0x7ffff) | 1u << 31};
-        m_ops.push_back({entity, 0, Kind::create, 0});
+        const Entity entity{m_created++, deferredGeneration()};
+        m_ops.emplace_back(entity, 0, ComponentId{0}, Kind::create);
         add(entity, values...);
         return entity;
     }
-    void destroy(Entity entity) { m_ops.push_back({entity, 0, Kind::destroy, 0}); }
+    void destroy(Entity entity) { m_ops.emplace_back(entity, 0, ComponentId{0}, Kind::destroy); }
 
     // Adds or overwrites.
     template <class... Ts>
@@ -75,14 +75,26 @@ public:
 private:
     friend class CommandPlayback;
 
-    enum class Kind : uint16_t { create, destroy, add, set, remove };
+    enum class Kind : uint8_t { create, destroy, add, set, remove };
     struct Op {
         Entity target;
-        ComponentId component;
-        Kind kind;
         uint32_t value; // offset in m_values; unused by create, destroy, remove
+        uint8_t component;
+        Kind kind;
+        uint16_t buffer = 0; // this and next: for playback
+        Op* next = nullptr;  // of the same entity, in any buffer
+        Op(Entity entity, uint32_t valueOffset, ComponentId id, Kind opKind)
+            : target(entity), value(valueOffset), component(static_cast<uint8_t>(id)), kind(opKind)
+        {}
     };
+    static_assert(kMaxComponents <= 256, "component ids fit a byte");
+    static_assert(sizeof(Op) == 24);
 
+    // Top bit: deferred. Then the tag, then as much of the epoch as fits: enough to catch misuse.
+    [[nodiscard]] uint32_t deferredGeneration() const
+    {
+        return 1u << 31 | m_tag << 19 | (m_epoch & 0x7ffff);
+    }
     void record(Entity entity, ComponentId id, Kind kind, const void* value, size_t bytes);
 
     std::vector<Op> m_ops;

@@ -1,16 +1,16 @@
 // Playback of command buffers, in order:
 //   collect    ops -> one slot per entity; new entities get their ids, in recording order
 //   merge      a slot's ops -> its final set of components; deferred entities in values -> real
-//   ones move       slots sorted by (destination, source archetype); each run moves column by
-//   column write      values, in recording order attach     parents; then destroys
+//   ones move       slots that go from one archetype to one other form a run, which moves column by
+//              column; runs go by (destination, source)
+//   write      values, in recording order
+//   attach     parents; then destroys
 #include "runtime/ecs/command_buffer.h"
 
 #include "runtime/assert.h"
 #include "runtime/ecs/world.h"
 
 #include <algorithm>
-#include <numeric>
-#include <tuple>
 
 namespace penumbra::ecs {
 
@@ -24,62 +24,65 @@ public:
     {
         m_world.assertStructural();
         collect();
-        for (Slot& slot : m_slots)
-            merge(slot);
+        for (uint32_t i = 0; i < m_slots.size(); ++i)
+            merge(i);
         move();
-        for (Slot& slot : m_slots)
-            write(slot);
         for (const Slot& slot : m_slots)
+            write(slot);
+        for (Slot& slot : m_slots)
             attach(slot);
         for (const Slot& slot : m_slots)
             if (slot.destroyed && m_world.alive(slot.entity)) // else it went with its parent
                 m_world.destroy(slot.entity);
-        for (const Entity entity : m_orphans)
-            if (m_world.alive(entity))
-                m_world.destroy(entity);
         for (CommandBuffer* buffer : m_buffers)
             buffer->clear();
         return m_statistics;
     }
 
 private:
+    using Op = CommandBuffer::Op;
     using Kind = CommandBuffer::Kind;
 
-    struct Op {
-        CommandBuffer::Op* op;
-        std::byte* value;
-        uint32_t buffer;
-        uint32_t next = kNone; // of the same entity
-    };
     struct Slot {
         Entity entity;
-        uint32_t first = kNone, last = kNone; // into m_ops
-        Archetype* from = nullptr;            // null: new
+        Op* first = nullptr;
+        Op* last = nullptr;
+        Archetype* from = nullptr; // null: new
         Archetype* to = nullptr;
-        const Op* parent = nullptr; // the op that gave its last Parent value
         bool destroyed = false;
         bool parentRemoved = false;
+        const Op* parent = nullptr; // the op that gave its last Parent value
+    };
+    struct Run {
+        Archetype* from;
+        Archetype* to;
+        std::vector<uint32_t> slots;
     };
 
     void collect();
-    void merge(Slot& slot);
+    void merge(uint32_t slotIndex);
     void resolve(const Op& op);
-    [[nodiscard]] Entity real(Entity entity, uint32_t buffer) const;
     void move();
-    void moveRun(std::span<const uint32_t> run);
-    void write(Slot& slot);
-    void attach(const Slot& slot);
+    void moveRun(const Run& run);
+    void write(const Slot& slot);
+    void attach(Slot& slot);
+    [[nodiscard]] Entity real(Entity entity, uint32_t buffer) const;
+    [[nodiscard]] std::byte* valueOf(const Op& op) const
+    {
+        return m_buffers[op.buffer]->m_values.data() + op.value;
+    }
+    [[nodiscard]] Run& runOf(Archetype* from, Archetype* to);
 
     World& m_world;
     std::span<CommandBuffer* const> m_buffers;
     ComponentId m_parent;
-    std::vector<Op> m_ops;
     std::vector<Slot> m_slots;
     std::vector<std::vector<Entity>> m_created; // [buffer][deferred index]
-    std::vector<Entity> m_orphans;
-    std::vector<Entity> m_entities;                    // scratch of moveRun()
-    std::vector<std::pair<uint32_t, uint32_t>> m_rows; // scratch of moveRun(): source row, slot
-    Archetype* m_lastTo = nullptr;                     // most entities go where the one before went
+    std::vector<Run> m_runs;
+    uint32_t m_lastRun = 0;         // most entities go the way of the one before
+    Archetype* m_lastTo = nullptr;  // likewise
+    std::vector<Entity> m_entities; // scratch of moveRun()
+    std::vector<uint32_t> m_rows;   // scratch of moveRun()
     PlaybackStatistics m_statistics;
 };
 
@@ -87,9 +90,8 @@ Entity CommandPlayback::real(Entity entity, uint32_t buffer) const
 {
     if (!entity.isDeferred())
         return entity;
-    const CommandBuffer& owner = *m_buffers[buffer];
-    const uint32_t generation = owner.m_tag << 19 | (owner.m_epoch & 0x7ffff) | 1u << 31;
-    PENUMBRA_ASSERT(entity.generation == generation && entity.index < m_created[buffer].size(),
+    PENUMBRA_ASSERT(entity.generation == m_buffers[buffer]->deferredGeneration() &&
+                        entity.index < m_created[buffer].size(),
                     "deferred entity {} belongs to another buffer, or to one already played",
                     entity.index);
     return m_created[buffer][entity.index];
@@ -97,15 +99,16 @@ Entity CommandPlayback::real(Entity entity, uint32_t buffer) const
 
 void CommandPlayback::collect()
 {
-    size_t count = 0;
-    for (const CommandBuffer* buffer : m_buffers)
-        count += buffer->m_ops.size();
-    m_ops.reserve(count);
+    PENUMBRA_ASSERT(m_buffers.size() <= UINT16_MAX, "{} command buffers in one playback",
+                    m_buffers.size());
     m_created.resize(m_buffers.size());
     std::vector<uint32_t>& slotOf = m_world.m_mergeSlots; // [entity index], kNone between playbacks
     for (uint32_t b = 0; b < m_buffers.size(); ++b) {
         CommandBuffer& buffer = *m_buffers[b];
-        for (CommandBuffer::Op& op : buffer.m_ops) {
+        m_created[b].reserve(buffer.m_created);
+        m_slots.reserve(m_slots.size() + buffer.m_created);
+        for (Op& op : buffer.m_ops) {
+            op.buffer = static_cast<uint16_t>(b);
             if (op.kind == Kind::create)
                 m_created[b].push_back(m_world.m_entities.allocate());
             const Entity entity = real(op.target, b);
@@ -116,18 +119,16 @@ void CommandPlayback::collect()
             }
             if (m_world.m_entities.indexCount() > slotOf.size())
                 slotOf.resize(m_world.m_entities.indexCount() * size_t{2}, kNone);
-            uint32_t& slot = slotOf[entity.index];
-            if (slot == kNone) {
-                slot = static_cast<uint32_t>(m_slots.size());
+            uint32_t& index = slotOf[entity.index];
+            if (index == kNone) {
+                index = static_cast<uint32_t>(m_slots.size());
                 m_slots.push_back({entity});
                 if (!isNew)
                     m_slots.back().from = m_world.place(entity).archetype;
             }
-            const auto at = static_cast<uint32_t>(m_ops.size());
-            m_ops.push_back({&op, buffer.m_values.data() + op.value, b});
-            Slot& s = m_slots[slot];
-            (s.first == kNone ? s.first : m_ops[s.last].next) = at;
-            s.last = at;
+            Slot& slot = m_slots[index];
+            (slot.first == nullptr ? slot.first : slot.last->next) = &op;
+            slot.last = &op;
         }
         m_statistics.commands += static_cast<uint32_t>(buffer.m_ops.size());
     }
@@ -138,43 +139,54 @@ void CommandPlayback::collect()
 // Replaces deferred entities inside a value by the real ones, where it lies.
 void CommandPlayback::resolve(const Op& op)
 {
-    for (const uint32_t offset : componentInfo(op.op->component).entityFields) {
+    for (const uint32_t offset : componentInfo(op.component).entityFields) {
         Entity entity;
-        std::memcpy(&entity, op.value + offset, sizeof(entity));
+        std::memcpy(&entity, valueOf(op) + offset, sizeof(entity));
         entity = real(entity, op.buffer);
-        std::memcpy(op.value + offset, &entity, sizeof(entity));
+        std::memcpy(valueOf(op) + offset, &entity, sizeof(entity));
     }
 }
 
-void CommandPlayback::merge(Slot& slot)
+CommandPlayback::Run& CommandPlayback::runOf(Archetype* from, Archetype* to)
 {
+    const auto goesThere = [&](const Run& run) { return run.from == from && run.to == to; };
+    if (m_lastRun >= m_runs.size() || !goesThere(m_runs[m_lastRun])) {
+        const auto found = std::find_if(m_runs.begin(), m_runs.end(), goesThere);
+        m_lastRun = static_cast<uint32_t>(found - m_runs.begin());
+        if (found == m_runs.end())
+            m_runs.push_back({from, to, {}});
+    }
+    return m_runs[m_lastRun];
+}
+
+void CommandPlayback::merge(uint32_t slotIndex)
+{
+    Slot& slot = m_slots[slotIndex];
     ComponentMask mask = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
-    for (uint32_t at = slot.first; at != kNone; at = m_ops[at].next) {
-        Op& op = m_ops[at];
-        const ComponentId id = op.op->component;
-        switch (op.op->kind) {
+    for (Op* op = slot.first; op != nullptr; op = op->next) {
+        switch (op->kind) {
         case Kind::create:
             break;
         case Kind::destroy:
             slot.destroyed = true;
             break;
         case Kind::set:
-            if (!mask.test(id)) {
-                op.op->kind = Kind::remove; // nothing to write; a second removal is harmless
+            if (mask.test(op->component)) {
+                resolve(*op);
+            } else {
+                op->kind = Kind::remove; // not to be written; it is absent at this point anyway
                 ++m_statistics.dropped;
-                break;
             }
-            resolve(op);
             break;
         case Kind::add:
-            mask.set(id);
-            resolve(op);
-            if (id == m_parent)
-                slot.parent = &op;
+            mask.set(op->component);
+            resolve(*op);
+            if (op->component == m_parent)
+                slot.parent = op;
             break;
         case Kind::remove:
-            mask.reset(id);
-            if (id == m_parent) {
+            mask.reset(op->component);
+            if (op->component == m_parent) {
                 slot.parent = nullptr;
                 slot.parentRemoved = true;
             }
@@ -184,84 +196,78 @@ void CommandPlayback::merge(Slot& slot)
     if (m_lastTo == nullptr || !(m_lastTo->mask() == mask))
         m_lastTo = &m_world.archetypeOf(mask);
     slot.to = m_lastTo;
+    if (slot.to != slot.from)
+        runOf(slot.from, slot.to).slots.push_back(slotIndex);
 }
 
 void CommandPlayback::move()
 {
-    std::vector<uint32_t> order;
-    for (uint32_t i = 0; i < m_slots.size(); ++i)
-        if (m_slots[i].from != m_slots[i].to)
-            order.push_back(i);
-    const auto key = [&](uint32_t i) {
-        const Slot& slot = m_slots[i];
-        return std::pair(slot.to->index(), slot.from != nullptr ? slot.from->index() : kNone);
+    const auto key = [](const Run& run) {
+        return std::pair(run.to->index(), run.from != nullptr ? run.from->index() : kNone);
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-    for (size_t first = 0, end = 0; first < order.size(); first = end) {
-        while (end < order.size() && key(order[end]) == key(order[first]))
-            ++end;
-        moveRun(std::span(order).subspan(first, end - first));
-    }
-    m_statistics.moves = static_cast<uint32_t>(order.size());
+    std::sort(m_runs.begin(), m_runs.end(),
+              [&](const Run& a, const Run& b) { return key(a) < key(b); });
+    for (const Run& run : m_runs)
+        moveRun(run);
 }
 
-void CommandPlayback::moveRun(std::span<const uint32_t> run)
+void CommandPlayback::moveRun(const Run& run)
 {
-    Archetype& to = *m_slots[run[0]].to;
-    Archetype* from = m_slots[run[0]].from;
+    EntityTable& table = m_world.m_entities;
     m_entities.clear();
     m_rows.clear();
-    for (const uint32_t i : run) {
+    for (const uint32_t i : run.slots) {
         m_entities.push_back(m_slots[i].entity);
-        m_rows.emplace_back(from != nullptr ? m_world.m_entities[m_slots[i].entity].row : 0, i);
+        m_rows.push_back(table[m_slots[i].entity].row);
     }
-    const uint32_t firstRow = to.append(m_entities, m_world.m_stamp);
-    for (uint32_t k = 0; k < run.size(); ++k) {
-        EntityRecord& record = m_world.m_entities[m_entities[k]];
-        record.archetype = to.index();
-        record.row = firstRow + k;
+    uint32_t row = run.to->append(m_entities, m_world.m_stamp);
+    if (run.from != nullptr)
+        run.to->copyRows(row, *run.from, m_rows);
+    for (const Entity entity : m_entities) {
+        table[entity].archetype = run.to->index();
+        table[entity].row = row++;
     }
-    if (from == nullptr)
+    m_statistics.moves += static_cast<uint32_t>(run.slots.size());
+    if (run.from == nullptr)
         return;
-    to.copyRows(firstRow, *from, m_rows);
     // From the last row down: the row that fills a gap is then never one that leaves as well.
     std::sort(m_rows.begin(), m_rows.end(), std::greater<>());
-    for (const auto& [row, slot] : m_rows)
-        m_world.takeRowOut(*from, row);
+    for (const uint32_t left : m_rows)
+        m_world.takeRowOut(*run.from, left);
 }
 
-void CommandPlayback::write(Slot& slot)
+void CommandPlayback::write(const Slot& slot)
 {
-    const EntityRecord record = m_world.m_entities[slot.entity];
-    for (uint32_t at = slot.first; at != kNone; at = m_ops[at].next) {
-        const Op& op = m_ops[at];
-        const bool writes = op.op->kind == Kind::add || op.op->kind == Kind::set;
-        const int32_t column = slot.to->columnOf(op.op->component);
+    const uint32_t row = m_world.m_entities[slot.entity].row;
+    for (const Op* op = slot.first; op != nullptr; op = op->next) {
+        const bool writes = op->kind == Kind::add || op->kind == Kind::set;
+        const int32_t column = slot.to->columnOf(op->component);
         if (!writes || column < 0)
             continue;
-        slot.to->markRow(column, record.row, m_world.m_stamp);
-        slot.to->write(op.op->component, record.row, op.value);
+        if (slot.from == slot.to) // else the new row is marked already
+            slot.to->markRow(column, row, m_world.m_stamp);
+        slot.to->write(op->component, row, valueOf(*op));
     }
 }
 
-void CommandPlayback::attach(const Slot& slot)
+void CommandPlayback::attach(Slot& slot)
 {
+    Hierarchy& hierarchy = m_world.m_hierarchy;
     if (slot.parentRemoved)
-        m_world.m_hierarchy.detach(slot.entity);
+        hierarchy.detach(slot.entity);
     if (slot.parent == nullptr)
         return;
     Parent parent;
-    std::memcpy(&parent, slot.parent->value, sizeof(parent));
+    std::memcpy(&parent, valueOf(*slot.parent), sizeof(parent));
     if (!m_world.alive(parent.entity)) {
-        m_world.m_hierarchy.detach(slot.entity);
-        m_orphans.push_back(slot.entity);
+        hierarchy.detach(slot.entity);
+        slot.destroyed = true;
         return;
     }
-    if (m_world.m_hierarchy.attach(slot.entity, parent.entity))
+    if (hierarchy.attach(slot.entity, parent.entity))
         return;
     ++m_statistics.refused;
-    const Entity old = m_world.m_hierarchy.parentOf(slot.entity);
+    const Entity old = hierarchy.parentOf(slot.entity);
     if (old.isNull()) {
         m_world.remove<Parent>(slot.entity);
         return;

@@ -13,14 +13,6 @@ uint32_t Hierarchy::nodeOf(Entity entity)
     return node;
 }
 
-const Hierarchy::Node* Hierarchy::find(Entity entity) const
-{
-    const size_t node = size_t{entity.index} + 1;
-    const bool known = node < m_nodes.size() && m_nodes[node].parent != kNone &&
-                       m_nodes[node].generation == entity.generation;
-    return known ? &m_nodes[node] : nullptr;
-}
-
 void Hierarchy::link(uint32_t child, uint32_t parent)
 {
     Node& c = m_nodes[child];

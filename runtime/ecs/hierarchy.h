@@ -42,6 +42,7 @@ public:
     // of one level in parallel.
     [[nodiscard]] std::span<const uint32_t> levels() const { return m_levels; }
 
+    [[nodiscard]] bool contains(Entity entity) const { return find(entity) != nullptr; }
     [[nodiscard]] Entity parentOf(Entity child) const; // null: none
     [[nodiscard]] std::vector<Entity> childrenOf(Entity parent) const;
     // True if `entity` is `ancestor` or below it.
@@ -67,7 +68,13 @@ private:
         uint32_t firstChild = 0, lastChild = 0, next = 0, previous = 0; // 0: none
     };
     uint32_t nodeOf(Entity entity); // makes room
-    [[nodiscard]] const Node* find(Entity entity) const;
+    [[nodiscard]] const Node* find(Entity entity) const
+    {
+        const size_t node = size_t{entity.index} + 1;
+        const bool known = node < m_nodes.size() && m_nodes[node].parent != kNone &&
+                           m_nodes[node].generation == entity.generation;
+        return known ? &m_nodes[node] : nullptr;
+    }
     [[nodiscard]] Entity entityOf(uint32_t node) const
     {
         return {node - 1, m_nodes[node].generation};

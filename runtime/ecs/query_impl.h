@@ -32,7 +32,7 @@ uint32_t Query<Terms...>::slot()
 {
     static const uint32_t slot = [] {
         QueryTerms terms;
-        const auto add = [&]<class Term>() {
+        [[maybe_unused]] const auto add = [&]<class Term>() {
             using Traits = TermTraits<Term>;
             const ComponentId id = componentId<typename Traits::Component>();
             if (Traits::kKind == TermKind::without)
@@ -82,7 +82,7 @@ void Query<Terms...>::mark(const Match& match, uint32_t segment, uint32_t row, u
 {
     [&]<size_t... k>(std::index_sequence<k...>)
     {
-        const auto markTerm = [&](bool writes, int16_t column) {
+        [[maybe_unused]] const auto markTerm = [&](bool writes, int16_t column) {
             if (writes && column >= 0)
                 match.archetype->markRows(column, segment, row, count, m_stamp);
         };
@@ -110,7 +110,8 @@ auto Query<Terms...>::lanePointers(const Match& match, uint32_t row)
 
 template <class... Terms>
 template <size_t... k>
-auto Query<Terms...>::columnPointers(const Match& match, uint32_t row, std::index_sequence<k...>)
+auto Query<Terms...>::columnPointers([[maybe_unused]] const Match& match,
+                                     [[maybe_unused]] uint32_t row, std::index_sequence<k...>)
 {
     return std::tuple_cat(lanePointers<k>(match, row)...);
 }
@@ -128,8 +129,9 @@ constexpr size_t Query<Terms...>::firstPointer()
 
 template <class... Terms>
 template <class F, class Columns, size_t... k>
-void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities, size_t row,
-                              const Columns& columns, std::index_sequence<k...>)
+void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities,
+                              [[maybe_unused]] size_t row, const Columns& columns,
+                              std::index_sequence<k...>)
 {
     Arguments arguments;
     (std::get<k>(arguments).template load<firstPointer<k>()>(columns, row), ...);

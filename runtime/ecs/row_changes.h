@@ -4,6 +4,7 @@
 // never missed, at worst reported for a row that a reader of that age has seen already.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

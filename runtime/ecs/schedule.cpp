@@ -39,8 +39,8 @@ void Schedule::add(std::string name, std::string_view phaseName, const Access& a
 
     uint32_t order = 0;
     for (const Phase& p : m_phases)
-        for (const uint32_t system : p.systems)
-            m_systems[system]->order = order++;
+        for (const uint32_t i : p.systems)
+            m_systems[i]->order = order++;
 }
 
 std::vector<Schedule::Timing> Schedule::timings() const

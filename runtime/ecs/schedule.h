@@ -12,7 +12,7 @@
 // Order: phases run one after the other. Within a phase, a system waits for the systems added
 // before it with which it conflicts (one writes what the other reads or writes); the rest may run
 // at once on TBB. Structural changes recorded in context.commands() are made at one point, after
-// the last phase, in the order in which systems were added. The world after run() is therefore the
+// the last phase, in the order of the systems. The world after run() is therefore the
 // same, bit for bit, at any number of threads, as long as systems share nothing but components.
 #pragma once
 

@@ -59,7 +59,7 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
 PlaybackStatistics Schedule::run()
 {
     m_world.assertStructural();
-    m_world.m_hierarchy.refresh();
+    static_cast<void>(m_world.hierarchy()); // systems see it const: bring it up to date
     const Stamp base = m_world.m_stamp;
     m_world.m_inSystems = true;
     for (const Phase& phase : m_phases)
@@ -69,8 +69,9 @@ PlaybackStatistics Schedule::run()
     // The sync point, under a version after every system's.
     m_world.m_stamp = {base.version + m_systems.size() + 1, base.version};
     std::vector<CommandBuffer*> buffers;
-    for (const auto& node : m_systems)
-        buffers.push_back(&node->commands);
+    for (const Phase& phase : m_phases)
+        for (const uint32_t index : phase.systems)
+            buffers.push_back(&m_systems[index]->commands);
     return play(m_world, buffers);
 }
 

@@ -165,9 +165,8 @@ const Hierarchy& World::hierarchy()
     return m_hierarchy;
 }
 
-void World::destroyOne(Entity entity)
+void World::destroyLeaf(Entity entity)
 {
-    m_hierarchy.detach(entity);
     const Place at = place(entity);
     takeRowOut(*at.archetype, at.row);
     m_entities.release(entity);
@@ -176,11 +175,13 @@ void World::destroyOne(Entity entity)
 void World::destroy(Entity entity)
 {
     assertStructural();
-    static_cast<void>(place(entity));
+    if (!m_hierarchy.contains(entity))
+        return destroyLeaf(entity);
     m_doomed.clear();
     m_hierarchy.collect(entity, m_doomed);
     while (!m_doomed.empty()) { // from the leaves up: each is a leaf when its turn comes
-        destroyOne(m_doomed.back());
+        m_hierarchy.detach(m_doomed.back());
+        destroyLeaf(m_doomed.back());
         m_doomed.pop_back();
     }
 }

@@ -136,7 +136,7 @@ private:
     void removeSet(Entity entity, const ComponentSet& set);
     Place move(Entity entity, Archetype& to);
     void takeRowOut(Archetype& archetype, uint32_t row);
-    void destroyOne(Entity entity);
+    void destroyLeaf(Entity entity);
     void attachOrFail(Entity child, Entity parent);
     template <class T>
     static void store(const Place& place, const T& value);

@@ -24,7 +24,8 @@ std::string valueText(const std::vector<std::byte>& value)
     for (size_t at = 0; at < value.size(); at += 4) {
         uint32_t word = 0;
         std::memcpy(&word, value.data() + at, std::min<size_t>(4, value.size() - at));
-        text += (at == 0 ? "" : " ") + wordText(word);
+        text += at == 0 ? "" : " ";
+        text += wordText(word);
     }
     return text;
 }

@@ -55,8 +55,13 @@ struct DestroyDevice {
     void operator()(VkDevice device) const; // waits for the GPU, then destroys
 };
 
-// Outlives everything made from it. Move-only; the objects made from it do not point at it.
+// Outlives everything made from it. Moves, but is not assigned to; what is made from it does not
+// point at it.
 struct Device {
+    Device() = default;
+    Device(Device&&) noexcept = default;
+    Device& operator=(Device&&) = delete; // a live device would end before its cache
+
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice handle = VK_NULL_HANDLE;

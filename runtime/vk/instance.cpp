@@ -65,6 +65,17 @@ bool contains(const std::vector<VkExtensionProperties>& extensions, const char* 
     });
 }
 
+// Without a driver the loader still lists extensions of its own and of layers.
+bool hasDriver()
+{
+    const VkInstanceCreateInfo info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+    VkInstance instance = VK_NULL_HANDLE;
+    if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS)
+        return false;
+    vkDestroyInstance(instance, nullptr);
+    return true;
+}
+
 bool hasValidationLayer()
 {
     std::uint32_t count = 0;
@@ -98,10 +109,10 @@ Result<Instance> createInstance(const InstanceOptions& options)
     std::vector<const char*> extensions;
     for (const std::string& name : options.extensions) {
         if (!contains(available, name.c_str()))
-            return available.empty()
+            return !hasDriver()
                        ? noDeviceError()
-                       : Error{fmt::format("the Vulkan driver lacks the instance extension {}; "
-                                           "update the driver, or run without a window",
+                       : Error{fmt::format("the Vulkan driver lacks the instance extension "
+                                           "{}; update it, or run without a window",
                                            name)};
         extensions.push_back(name.c_str());
     }

@@ -45,13 +45,47 @@ void setMass(CollisionShape::Data& data, const MassIntegrals& mass)
 std::unique_ptr<btCollisionShape> makeHullPart(const ConvexHull& hull,
                                                const btTransform& bodyFromMesh)
 {
-    const ShrunkHull shrunk = shrinkHull(hull, marginFor(integrate(hull)));
+    // A reduced hull lies inside. Half of the gap stays unshrunk, so that bodies float by as
+    // little as they sink.
+    const float margin = marginFor(integrate(hull));
+    const ShrunkHull shrunk = shrinkHull(hull, max(0.0f, margin - hull.gap / 2));
     auto part = std::make_unique<btConvexHullShape>();
     for (const vec3& p : shrunk.points)
         part->addPoint(bodyFromMesh * toBullet(p), false);
-    part->setMargin(max(shrunk.distance, 1e-4f));
+    part->setMargin(min(margin, shrunk.distance + hull.gap / 2));
     part->recalcLocalAabb();
     return part;
+}
+
+Result<std::vector<ConvexHull>> makeHulls(std::span<const std::vector<vec3>> pieces)
+{
+    constexpr std::size_t kMaxPieces = 256; // a slip of the caller; far past what is stable or fast
+    if (pieces.empty() || pieces.size() > kMaxPieces)
+        return Error{fmt::format("compound: {} pieces; give 1 to {}", pieces.size(), kMaxPieces)};
+    std::vector<ConvexHull> hulls;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const Result<ConvexHull> full = convexHull(pieces[i]);
+        if (!full)
+            return fail(full.error(), fmt::format("compound: piece {}", i));
+        hulls.push_back(reduceHull(*full, pieces.size() == 1 ? kMaxHullPoints : kMaxPiecePoints));
+    }
+    return hulls;
+}
+
+CollisionShape makeCompound(std::span<const ConvexHull> hulls, const MassIntegrals& mass)
+{
+    auto data = std::make_shared<CollisionShape::Data>();
+    setMass(*data, mass);
+    for (const ConvexHull& hull : hulls)
+        data->parts.push_back(makeHullPart(hull, data->meshFromBody.inverse()));
+    if (hulls.size() == 1) // Bullet is faster and steadier without a compound around one hull
+        return CollisionShape(std::move(data));
+    auto compound = std::make_unique<btCompoundShape>(true, static_cast<int>(hulls.size()));
+    compound->setMargin(0); // the pieces carry their own
+    for (const auto& part : data->parts)
+        compound->addChildShape(btTransform::getIdentity(), part.get());
+    data->parts.push_back(std::move(compound));
+    return CollisionShape(std::move(data));
 }
 
 } // namespace
@@ -103,39 +137,42 @@ Result<CollisionShape> hullShape(std::span<const vec3> points)
     if (!full)
         return fail(full.error(), "hull");
     const ConvexHull hull = reduceHull(*full, kMaxHullPoints);
-    auto data = std::make_shared<CollisionShape::Data>();
-    setMass(*data, integrate(hull));
-    data->parts.push_back(makeHullPart(hull, data->meshFromBody.inverse()));
-    return CollisionShape(std::move(data));
+    return makeCompound({&hull, 1}, integrate(*full));
 }
 
 Result<CollisionShape> compoundShape(std::span<const std::vector<vec3>> pieces)
 {
-    constexpr std::size_t kMaxPieces = 256; // a slip of the caller; far past what is stable or fast
-    if (pieces.empty() || pieces.size() > kMaxPieces)
-        return Error{fmt::format("compound: {} pieces; give 1 to {}", pieces.size(), kMaxPieces)};
-    std::vector<ConvexHull> hulls;
+    const Result<std::vector<ConvexHull>> hulls = makeHulls(pieces);
+    if (!hulls)
+        return hulls.error();
     MassIntegrals mass;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const Result<ConvexHull> full = convexHull(pieces[i]);
-        if (!full)
-            return fail(full.error(), fmt::format("compound: piece {}", i));
-        hulls.push_back(reduceHull(*full, kMaxHullPoints));
-        const MassIntegrals piece = integrate(hulls.back());
+    for (const ConvexHull& hull : *hulls) {
+        const MassIntegrals piece = integrate(hull);
         mass.volume += piece.volume;
         mass.first += piece.first;
         mass.second += piece.second;
     }
-    auto data = std::make_shared<CollisionShape::Data>();
-    setMass(*data, mass);
-    auto compound = std::make_unique<btCompoundShape>(true, static_cast<int>(hulls.size()));
-    compound->setMargin(0); // the pieces carry their own
-    for (const ConvexHull& hull : hulls) {
-        data->parts.push_back(makeHullPart(hull, data->meshFromBody.inverse()));
-        compound->addChildShape(btTransform::getIdentity(), data->parts.back().get());
-    }
-    data->parts.push_back(std::move(compound));
-    return CollisionShape(std::move(data));
+    return makeCompound(*hulls, mass);
+}
+
+Result<CollisionShape> meshShape(std::span<const vec3> positions,
+                                 std::span<const std::uint32_t> indices,
+                                 const DecompositionOptions& options)
+{
+    const Result<std::vector<std::vector<vec3>>> pieces = decompose(positions, indices, options);
+    if (!pieces)
+        return pieces.error();
+    const Result<std::vector<ConvexHull>> hulls = makeHulls(*pieces);
+    if (!hulls)
+        return hulls.error();
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+        triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    const MassIntegrals mass = integrate(positions, triangles);
+    if (!(mass.volume > 0))
+        return Error{
+            "mesh shape: the mesh has no volume; close it, or turn its triangles outwards"};
+    return makeCompound(*hulls, mass);
 }
 
 Result<CollisionShape> groundShape(float height)

@@ -8,6 +8,7 @@
 
 #include "runtime/result.h"
 #include "shaders/shared/interop.h"
+#include "systems/physics/convex_decomposition.h"
 
 #include <memory>
 #include <span>
@@ -29,18 +30,24 @@ private:
     std::shared_ptr<const Data> m_data;
 };
 
-constexpr std::size_t kMaxHullPoints = 64; // more costs time and changes contacts little
+constexpr std::size_t kMaxHullPoints = 64;  // more costs time and changes contacts little
+constexpr std::size_t kMaxPiecePoints = 32; // of each piece of a body in several
 
 // Errors, each: sizes or coordinates that are not finite, not positive or beyond 1e4 m; a hull
 // without volume.
 Result<CollisionShape> boxShape(vec3 halfExtents);
 Result<CollisionShape> sphereShape(float radius);
-// The convex hull of a mesh's vertices, reduced to kMaxHullPoints of them. Exact to 0.2 % of the
-// size where they suffice.
+// The convex hull of a mesh's vertices, reduced to kMaxHullPoints of them: a curved body of 0.4 m
+// may sink or float by some millimetres. The mass centre and inertia are the full hull's.
 Result<CollisionShape> hullShape(std::span<const vec3> points);
-// Concave bodies: one hull per piece. Pieces that overlap count twice towards the mass centre. 1 to
-// 256 pieces.
+// Concave bodies: one hull per piece, 1 to 256 pieces. Pieces that overlap count twice towards the
+// mass centre.
 Result<CollisionShape> compoundShape(std::span<const std::vector<vec3>> pieces);
+// The same from a closed mesh, cut into pieces by decompose(); mass centre and inertia are the
+// mesh's own, exactly. A mesh that is nearly convex becomes one hull.
+Result<CollisionShape> meshShape(std::span<const vec3> positions,
+                                 std::span<const std::uint32_t> indices,
+                                 const DecompositionOptions& options = {});
 // Everything below the plane y = height is solid, without end. For static bodies only.
 Result<CollisionShape> groundShape(float height);
 

@@ -3,6 +3,7 @@
 #include "systems/physics/convex_hull.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace penumbra {
 
@@ -28,7 +29,7 @@ struct Grid {
 struct Piece {
     ivec3 low = ivec3(0), high = ivec3(0); // voxels, half open
     int voxels = 0;
-    double hullVolume = 0; // m³
+    double hullVolume = 0; // m³, around the voxels' corners
 };
 
 Grid voxelise(std::span<const vec3> positions, std::span<const std::uint32_t> indices,
@@ -96,10 +97,13 @@ Grid voxelise(std::span<const vec3> positions, std::span<const std::uint32_t> in
     return grid;
 }
 
-// The outermost corners of a piece's rows of solid voxels: all that its hull depends on.
-Piece measure(const Grid& grid, ivec3 low, ivec3 high, std::vector<vec3>& scratch)
+enum class Around { Corners, Middles };
+
+// The hull of a piece's solid voxels. The ends of its rows are all that the hull depends on. 0 when
+// it is flat.
+double hullVolume(const Grid& grid, ivec3 low, ivec3 high, Around around,
+                  std::vector<vec3>& scratch)
 {
-    Piece piece{low, high};
     scratch.clear();
     for (int z = low.z; z < high.z; ++z) {
         for (int y = low.y; y < high.y; ++y) {
@@ -109,20 +113,37 @@ Piece measure(const Grid& grid, ivec3 low, ivec3 high, std::vector<vec3>& scratc
                     continue;
                 first = first < 0 ? x : first;
                 last = x;
-                ++piece.voxels;
             }
             if (first < 0)
                 continue;
-            for (int corner = 0; corner < 4; ++corner) {
-                const ivec2 yz(y + corner % 2, z + corner / 2);
-                scratch.push_back(grid.low + grid.cell * vec3(static_cast<float>(first), vec2(yz)));
-                scratch.push_back(grid.low +
-                                  grid.cell * vec3(static_cast<float>(last + 1), vec2(yz)));
+            const auto add = [&](vec3 voxel) { scratch.push_back(grid.low + grid.cell * voxel); };
+            const vec3 start(ivec3(first, y, z)), end(ivec3(last, y, z));
+            if (around == Around::Middles) {
+                add(start + 0.5f);
+                add(end + 0.5f);
+                continue;
+            }
+            for (const vec2 yz : {vec2(0, 0), vec2(0, 1), vec2(1, 0), vec2(1, 1)}) {
+                add(start + vec3(0, yz));
+                add(end + vec3(1, yz));
             }
         }
     }
-    if (const Result<ConvexHull> hull = convexHull(scratch))
-        piece.hullVolume = integrate(*hull).volume;
+    const Result<ConvexHull> hull = convexHull(scratch);
+    return hull ? integrate(*hull).volume : 0;
+}
+
+Piece measure(const Grid& grid, ivec3 low, ivec3 high, std::vector<vec3>& scratch)
+{
+    Piece piece{low, high};
+    for (int z = low.z; z < high.z; ++z) {
+        for (int y = low.y; y < high.y; ++y) {
+            for (int x = low.x; x < high.x; ++x)
+                piece.voxels += grid.solid[grid.at({x, y, z})];
+        }
+    }
+    if (piece.voxels > 0)
+        piece.hullVolume = hullVolume(grid, low, high, Around::Corners, scratch);
     return piece;
 }
 
@@ -131,9 +152,12 @@ double voxelVolume(const Grid& grid)
     return static_cast<double>(grid.cell) * grid.cell * grid.cell;
 }
 
-double airIn(const Grid& grid, const Piece& piece)
+// The hull around the middles is half a voxel tighter on all sides, so the steps of the voxels do
+// not count as air.
+double airIn(const Grid& grid, const Piece& piece, std::vector<vec3>& scratch)
 {
-    return piece.hullVolume - piece.voxels * voxelVolume(grid);
+    const double hull = hullVolume(grid, piece.low, piece.high, Around::Middles, scratch);
+    return std::max(0.0, hull - piece.voxels * voxelVolume(grid));
 }
 
 // The best of a few planes across each axis: least hull volume, and, as a cup's halves enclose as
@@ -248,19 +272,18 @@ Result<std::vector<std::vector<vec3>>> decompose(std::span<const vec3> positions
             "decompose: the mesh encloses nothing; close it, or turn its triangles outwards"};
 
     const double enough = options.concavity * pieces[0].hullVolume;
+    std::vector<double> air{airIn(grid, pieces[0], scratch)}; // per piece
     while (static_cast<int>(pieces.size()) < options.maxPieces) {
-        double air = 0;
-        std::size_t worst = 0;
-        for (std::size_t i = 0; i < pieces.size(); ++i) {
-            air += airIn(grid, pieces[i]);
-            if (airIn(grid, pieces[i]) > airIn(grid, pieces[worst]))
-                worst = i;
-        }
+        const auto worst =
+            static_cast<std::size_t>(std::max_element(air.begin(), air.end()) - air.begin());
         Piece low, high;
-        if (air <= enough || !split(grid, pieces[worst], scratch, low, high))
+        if (std::accumulate(air.begin(), air.end(), 0.0) <= enough ||
+            !split(grid, pieces[worst], scratch, low, high))
             break;
         pieces[worst] = low;
+        air[worst] = airIn(grid, low, scratch);
         pieces.push_back(high);
+        air.push_back(airIn(grid, high, scratch));
     }
 
     std::vector<std::vector<vec3>> result;

@@ -20,7 +20,7 @@ struct DecompositionOptions {
 // The mesh (closed, indices in triples; closed parts may overlap) is filled with voxels, which are
 // cut in two along axis-aligned planes, the piece with the most air in its hull first. Each result
 // is the hull points of what the mesh has within one piece's voxels. The same input gives the same
-// bits. 0.1 to 1 s; run it once per asset. Errors: options out of range, indices out of range,
+// bits. 0.1 to 2 s; run it once per asset. Errors: options out of range, indices out of range,
 // coordinates that are not finite, a mesh that encloses nothing.
 Result<std::vector<std::vector<vec3>>> decompose(std::span<const vec3> positions,
                                                  std::span<const std::uint32_t> indices,

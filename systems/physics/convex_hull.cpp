@@ -21,11 +21,13 @@ vec3 toVec3(const btVector3& v)
     return {v.x(), v.y(), v.z()};
 }
 
-ConvexHull readHull(const btConvexHullComputer& computer)
+// The unshrunk hull of `points`. The computer rounds vertices to a grid, so they are taken from
+// where they came.
+ConvexHull readHull(const btConvexHullComputer& computer, std::span<const vec3> points)
 {
     ConvexHull hull;
-    for (int i = 0; i < computer.vertices.size(); ++i)
-        hull.points.push_back(toVec3(computer.vertices[i]));
+    for (int i = 0; i < computer.original_vertex_index.size(); ++i)
+        hull.points.push_back(points[static_cast<std::size_t>(computer.original_vertex_index[i])]);
     for (int f = 0; f < computer.faces.size(); ++f) {
         const btConvexHullComputer::Edge* const first = &computer.edges[computer.faces[f]];
         const auto apex = static_cast<std::uint32_t>(first->getSourceVertex());
@@ -51,6 +53,17 @@ float extent(std::span<const vec3> points)
     return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
 }
 
+double area(const ConvexHull& hull)
+{
+    double sum = 0;
+    for (const auto& t : hull.triangles) {
+        const vec3 a = hull.points[t[0]];
+        sum +=
+            0.5 * static_cast<double>(length(cross(hull.points[t[1]] - a, hull.points[t[2]] - a)));
+    }
+    return sum;
+}
+
 } // namespace
 
 Result<ConvexHull> convexHull(std::span<const vec3> points)
@@ -67,7 +80,7 @@ Result<ConvexHull> convexHull(std::span<const vec3> points)
     btConvexHullComputer computer;
     float shrunkBy = 0;
     compute(computer, points, 0, 0, shrunkBy);
-    ConvexHull hull = readHull(computer);
+    ConvexHull hull = readHull(computer, points);
     const double size = extent(points);
     constexpr double kThinnest =
         1e-6; // of the size cubed; the hull computer's own grid is 1e-4 of the size
@@ -94,22 +107,23 @@ ConvexHull reduceHull(const ConvexHull& hull, std::size_t maxPoints)
         keep(*high);
     }
 
-    const float tolerance = 0.002f * extent(hull.points);
+    const float size = extent(hull.points);
+    const float tolerance = 0.002f * size;
     ConvexHull reduced;
     for (;;) {
         btConvexHullComputer computer;
         float shrunkBy = 0;
         compute(computer, kept, 0, 0, shrunkBy);
-        reduced = readHull(computer);
-        if (kept.size() == maxPoints)
-            return reduced;
-        std::vector<vec4> planes; // a flat start, such as an octahedron without its equator, has
-                                  // planes on both sides
+        reduced = readHull(computer, kept);
+        std::vector<vec4> planes;
         for (const auto& t : reduced.triangles) {
-            const vec3 a = reduced.points[t[0]];
-            const vec3 n = cross(reduced.points[t[1]] - a, reduced.points[t[2]] - a);
-            if (length(n) > 0)
-                planes.push_back(vec4(normalize(n), -dot(normalize(n), a)));
+            const vec3 p = reduced.points[t[0]], q = reduced.points[t[1]], r = reduced.points[t[2]];
+            const vec3 n = cross(q - p, r - p);
+            const float longest = std::max({length(q - p), length(r - q), length(p - r)});
+            constexpr float kSliver =
+                0.005f; // of the size, high: its normal is noise, its neighbours' planes do
+            if (length(n) > kSliver * size * longest)
+                planes.push_back(vec4(normalize(n), -dot(normalize(n), p)));
         }
         float farthest = tolerance;
         vec3 next(0);
@@ -122,8 +136,11 @@ ConvexHull reduceHull(const ConvexHull& hull, std::size_t maxPoints)
                 }
             }
         }
-        if (farthest == tolerance)
+        if (farthest == tolerance || kept.size() == maxPoints) {
+            reduced.gap = static_cast<float>((integrate(hull).volume - integrate(reduced).volume) /
+                                             area(reduced));
             return reduced;
+        }
         kept.push_back(next);
     }
 }
@@ -145,12 +162,12 @@ ShrunkHull shrinkHull(const ConvexHull& hull, float distance)
 }
 
 // Tetrahedra from the origin: volume v, ∫ x = v/4 Σp, ∫ x xᵀ = v/20 (Σ p pᵀ + (Σp)(Σp)ᵀ).
-MassIntegrals integrate(const ConvexHull& hull)
+MassIntegrals integrate(std::span<const vec3> points,
+                        std::span<const std::array<std::uint32_t, 3>> triangles)
 {
     MassIntegrals sum;
-    for (const auto& t : hull.triangles) {
-        const glm::dvec3 a(hull.points[t[0]]), b(hull.points[t[1]]), c(hull.points[t[2]]),
-            total = a + b + c;
+    for (const auto& t : triangles) {
+        const glm::dvec3 a(points[t[0]]), b(points[t[1]]), c(points[t[2]]), total = a + b + c;
         const double volume = dot(a, cross(b, c)) / 6;
         sum.volume += volume;
         sum.first += volume / 4 * total;

@@ -13,6 +13,7 @@ namespace penumbra {
 struct ConvexHull {
     std::vector<vec3> points;                            // metres
     std::vector<std::array<std::uint32_t, 3>> triangles; // counter-clockwise from outside
+    float gap = 0; // metres: how far inside the hull that it was reduced from it lies, on average
 };
 
 // Of a solid of density 1. Sums of solids are sums of these.
@@ -39,6 +40,12 @@ struct ShrunkHull {
 };
 ShrunkHull shrinkHull(const ConvexHull& hull, float distance);
 
-MassIntegrals integrate(const ConvexHull& hull);
+// Of any closed surface; parts that overlap count twice.
+MassIntegrals integrate(std::span<const vec3> points,
+                        std::span<const std::array<std::uint32_t, 3>> triangles);
+inline MassIntegrals integrate(const ConvexHull& hull)
+{
+    return integrate(hull.points, hull.triangles);
+}
 
 } // namespace penumbra

@@ -10,8 +10,8 @@ namespace penumbra {
 namespace {
 
 // A body sleeps after two seconds (Bullet's global time) below both.
-constexpr float kSleepVelocity = 0.06f;       // m/s: half a millimetre per step
-constexpr float kSleepAngularVelocity = 0.2f; // rad/s: as fast at the rim of a 0.3 m body
+constexpr float kSleepVelocity = 0.08f;       // m/s: 0.7 mm per step
+constexpr float kSleepAngularVelocity = 0.3f; // rad/s: about as fast at the rim of a 0.4 m body
 
 struct Body {
     std::uint64_t id = 0;

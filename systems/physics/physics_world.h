@@ -33,15 +33,15 @@ struct BodyDescription {
     Pose pose;
     Motion motion;                 // must be zero for static bodies
     float friction = 0.6f;         // Coulomb, [0, 10]; a contact uses the product of both bodies'
-    float rollingFriction = 0.02f; // [0, 10], share of friction; lets round things come to rest
+    float rollingFriction = 0.02f; // [0, 10], metres; lets round things rest, but 0.04 rattles
     float restitution = 0.1f;      // [0, 1]; product, too
     float linearDamping = 0.02f;   // [0, 1], share of velocity lost per second
-    float angularDamping = 0.05f;
+    float angularDamping = 0.1f;
 };
 
 struct PhysicsSettings {
     vec3 gravity = vec3(0, -9.81f, 0); // m/s²
-    int solverIterations = 24;         // [1, 1000]; 10 leaves piles of 20 creeping
+    int solverIterations = 50;         // [1, 1000]; Bullet's 10 leave a pile of 20 creeping
 };
 
 class PhysicsWorld {

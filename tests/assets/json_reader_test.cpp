@@ -28,19 +28,19 @@ TEST(JsonReader, RefusesWhatIsNotAnObject)
     EXPECT_FALSE(parseJson("{\"a\": 1}", 5)); // larger than allowed
 }
 
-TEST(JsonReader, FirstProblemSticksAndNamesItsPlace)
+TEST(JsonReader, ProblemsNameTheirPlacesOnce)
 {
     const auto document = parseJson(R"({"a":[{"b":-1}], "c":"text"})", 1000);
     ASSERT_TRUE(document);
-    JsonProblem problem;
-    const JsonReader root(*document, "file", problem);
+    JsonProblems problems;
+    const JsonReader root(*document, "file", problems);
     EXPECT_EQ(root.text("c"), "text");
-    EXPECT_FALSE(problem);
+    EXPECT_TRUE(problems.empty());
     EXPECT_EQ(root.member("a").element(0).count("b", 10), 0u);
-    ASSERT_TRUE(problem);
-    EXPECT_EQ(problem->message, "file.a[0].b is not a whole number from 0 to 10");
     EXPECT_EQ(root.member("zzz").element(3).number("q", 0, 1), 0.0f);
-    EXPECT_EQ(problem->message, "file.a[0].b is not a whole number from 0 to 10");
+    ASSERT_EQ(problems.size(), 2u);
+    EXPECT_EQ(problems[0].message, "file.a[0].b is not a whole number from 0 to 10");
+    EXPECT_EQ(problems[1].message, "file has no \"zzz\"");
 }
 
 TEST(JsonReader, RangesAndTypes)
@@ -50,9 +50,9 @@ TEST(JsonReader, RangesAndTypes)
     ASSERT_FALSE(document); // nlohmann refuses numbers beyond double
     const auto good = parseJson(R"({"f":1.5, "big":5, "list":[1,2,3], "t":true})", 1000);
     const auto refuses = [&](auto&& read) {
-        JsonProblem problem;
-        read(JsonReader(*good, "x", problem));
-        return problem.has_value();
+        JsonProblems problems;
+        read(JsonReader(*good, "x", problems));
+        return !problems.empty();
     };
     EXPECT_TRUE(refuses([](const JsonReader& r) { return r.count("f", 10); }));
     EXPECT_TRUE(refuses([](const JsonReader& r) { return r.count("big", 4); }));

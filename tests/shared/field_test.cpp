@@ -26,12 +26,13 @@ TEST(Field, OctahedralMapReturns)
         EXPECT_LT(length(octahedralDirection(octahedralUv(axis)) - axis), 1e-6);
 }
 
-TEST(Field, PackedNormalIsWithinAThousandthOfADegree)
+// Half a step of each coordinate, (1, 1, -2) / 65535 before normalising, where that stretches most: the face centres.
+TEST(Field, PackedNormalIsWithinHalfAStep)
 {
     RandomSphere random(2);
     for (int i = 0; i < 1000; ++i) {
         const vec3 n = random.direction();
-        EXPECT_LT(length(unpackNormal(packNormal(n)) - n), 6e-5);
+        EXPECT_LT(length(unpackNormal(packNormal(n)) - n), std::sqrt(6.0f) / 65535 * std::sqrt(3.0f));
     }
 }
 
@@ -130,7 +131,7 @@ TEST(Field, StepsOfAllBytes)
 TEST(Field, FadesOutWithoutAStep)
 {
     const FieldGrid grid = gridOf(17, 8);
-    EXPECT_EQ(fieldCell(vec3(0, 0, 8.0f), grid).decay, 0);
+    EXPECT_NEAR(fieldCell(vec3(0, 0, 8.0f), grid).decay, 0, 1e-7);
     EXPECT_EQ(fieldCell(vec3(0, 0, 100.0f), grid).decay, 0);
     float last = fieldCell(vec3(0, 0, 4.0f), grid).decay;
     for (float r = 4.001f; r < 8.2f; r += 0.001f) {

@@ -76,7 +76,7 @@ TEST(Image, SrgbIsItsOwnInverseAndKeepsBytes)
 {
     for (int i = 0; i < 256; ++i)
         EXPECT_NEAR(srgbFromLinear(linearFromSrgb(static_cast<float>(i) / 255)) * 255, i, 1e-3);
-    const std::vector<vec3> linear = {vec3(0, 1, 0.2140411f), vec3(-1, 9, NAN)};
+    const std::vector<vec3> linear = {vec3(0, 1, 0.2158605f), vec3(-1, 9, NAN)};
     const Image8 image = imageFromLinear(2, 1, linear);
     EXPECT_EQ(image.rgba, (std::vector<std::uint8_t>{0, 255, 128, 255, 0, 255, 0, 255}));
 }

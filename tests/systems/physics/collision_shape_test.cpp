@@ -2,6 +2,7 @@
 #include "systems/physics/convex_hull.h"
 
 #include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
@@ -62,6 +63,31 @@ TEST(CollisionShape, ReducedHullKeepsTheShape)
     EXPECT_GT(integrate(reduced).volume, 0.88 * integrate(full).volume);
     const ConvexHull box = *convexHull(boxPoints({0, 0, 0}, {1, 2, 3}));
     EXPECT_NEAR(integrate(reduceHull(box, 6 + 2)).volume, 48, 1e-3);
+}
+
+// The pieces bulge into the hole of an L, but the mass is the mesh's.
+TEST(CollisionShape, MeshKeepsItsOwnMass)
+{
+    // An L of three unit cubes: outline in the xy plane, counter-clockwise, 1 m deep.
+    const vec2 outline[] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+    std::vector<vec3> positions;
+    for (const float z : {0.0f, 1.0f}) {
+        for (const vec2 p : outline)
+            positions.push_back(vec3(p, z));
+    }
+    std::vector<std::uint32_t> indices;
+    for (const auto& [a, b, c] :
+         std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}})
+        indices.insert(indices.end(), {c, b, a, a + 6, b + 6, c + 6});
+    for (std::uint32_t i = 0; i < 6; ++i) {
+        const std::uint32_t j = (i + 1) % 6;
+        indices.insert(indices.end(), {i, j, j + 6, i, j + 6, i + 6});
+    }
+    const CollisionShape shape = *meshShape(positions, indices);
+    EXPECT_NEAR(shape.volume(), 3, 1e-5f);
+    EXPECT_LT(length(shape.centreOfMass() - vec3(5.0f / 6, 5.0f / 6, 0.5f)), 1e-5f);
+    EXPECT_GT(decompose(positions, indices)->size(), 1u);
+    EXPECT_FALSE(meshShape(positions, {}).ok());
 }
 
 TEST(CollisionShape, RefusesBadInput)

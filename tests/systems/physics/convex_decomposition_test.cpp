@@ -48,7 +48,7 @@ TEST(ConvexDecomposition, TorusKeepsItsHoleAndItsVolume)
     const Mesh torus = makeTorus(0.2f, 0.06f);
     const auto pieces = decompose(torus.positions, torus.indices);
     ASSERT_TRUE(pieces.ok());
-    EXPECT_GE(pieces->size(), 8u);
+    EXPECT_GE(pieces->size(), 6u);
     EXPECT_LE(pieces->size(), 24u);
     double volume = 0;
     for (const auto& piece : *pieces) {

@@ -1,0 +1,92 @@
+#include "assetc/compile.h"
+
+#include "assetc/import/import.h"
+
+#include <chrono>
+
+namespace penumbra {
+
+namespace {
+
+// Appends to `times` how long its scope ran.
+class StageTimer {
+public:
+    StageTimer(std::vector<StageTime>& times, const char* stage) : m_times(times), m_stage(stage) {}
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+    ~StageTimer()
+    {
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - m_start;
+        m_times.push_back({m_stage, elapsed.count()});
+    }
+
+private:
+    std::vector<StageTime>& m_times;
+    const char* m_stage;
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+} // namespace
+
+Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
+                                   const CompileOptions& options, Progress& progress)
+{
+    CompiledAsset asset;
+    CompileReport& report = asset.report;
+    MeshAsset& mesh = asset.mesh;
+    {
+        // Triangles of the whole file in its world space.
+        const StageTimer timer(report.times, "import");
+        auto imported = importMesh(source);
+        if (!imported)
+            return imported.error();
+        mesh = std::move(imported->mesh);
+        report.warnings = std::move(imported->warnings);
+    }
+    {
+        // Only triangles with an area, unit normals, no vertex twice.
+        const StageTimer timer(report.times, "clean");
+        const auto cleaned = cleanMesh(mesh);
+        if (!cleaned)
+            return fail(cleaned.error(), source.string());
+        report.clean = *cleaned;
+    }
+    {
+        // Receiver clusters: 64 consecutive vertices, compact in place and normal.
+        const StageTimer timer(report.times, "order");
+        report.order = orderClusters(mesh);
+    }
+    {
+        // To the positions and normals that readers will see, so that baked and shipped shapes are
+        // one.
+        const StageTimer timer(report.times, "quantise");
+        if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
+            return fail(quantised.error(), source.string());
+    }
+    {
+        // Self-visibility of the vertices and the field of the space around.
+        const StageTimer timer(report.times, "bake");
+        BakeResult baked =
+            bakeMesh(mesh.positions, mesh.normals, mesh.indices, options.bake, progress);
+        mesh.selfVisibility = std::move(baked.selfVisibility);
+        if (options.bake.field)
+            mesh.field = std::move(baked.field);
+    }
+    if (options.verify) {
+        const StageTimer timer(report.times, "verify");
+        const auto verified = verifyBake(mesh);
+        if (!verified)
+            return fail(verified.error(), source.string());
+        report.verify = *verified;
+    }
+    {
+        const StageTimer timer(report.times, "encode");
+        auto bytes = encodeMeshAsset(mesh, options.encode);
+        if (!bytes)
+            return fail(bytes.error(), source.string());
+        asset.bytes = std::move(*bytes);
+    }
+    return asset;
+}
+
+} // namespace penumbra

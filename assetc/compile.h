@@ -1,0 +1,45 @@
+// One mesh asset from source to bytes. compile.cpp is the whole way in order; read it first.
+#pragma once
+
+#include "assetc/bake.h"
+#include "assetc/import/clean.h"
+#include "assetc/order.h"
+#include "assetc/verify.h"
+#include "assets/mesh_codec.h"
+
+#include <filesystem>
+
+namespace penumbra {
+
+struct CompileOptions {
+    BakeOptions bake;
+    MeshEncodeOptions encode;
+    bool verify = false;
+};
+
+// Wall time of a stage, in the order in which they ran.
+struct StageTime {
+    const char* stage;
+    double seconds;
+};
+
+struct CompileReport {
+    CleanReport clean;
+    OrderReport order;
+    std::optional<VerifyReport> verify;
+    std::vector<StageTime> times;
+    std::vector<std::string> warnings;
+};
+
+struct CompiledAsset {
+    MeshAsset mesh; // as a reader of `bytes` sees it, up to rounding of the last bit
+    std::vector<std::byte> bytes;
+    CompileReport report;
+};
+
+// Same input, options and version: same bytes, whatever the thread count. Uses the TBB arena of the
+// caller.
+Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
+                                   const CompileOptions& options, Progress& progress);
+
+} // namespace penumbra

@@ -1,0 +1,19 @@
+// A glTF file as tinygltf's model, made safe in three steps: before the parser (size, depth of
+// nesting, where buffers may come from; what a mesh compiler does not need, images first, is
+// dropped unread), by the parser with file access confined to the file's folder, and after it by
+// checkModel, since tinygltf checks few of its indices.
+#pragma once
+
+#include "assetc/import/imported_mesh.h"
+
+#include <filesystem>
+#include <tiny_gltf.h>
+
+namespace penumbra {
+
+// On success every index in the model points at something, every accessor lies in its buffer and
+// nodes form a forest. Primitives with Draco geometry have no `indices`: the payload has them.
+Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
+                                 std::vector<std::string>& warnings);
+
+} // namespace penumbra

@@ -1,0 +1,15 @@
+// Triangles out of a .glb, .gltf or .obj file.
+#pragma once
+
+#include "assetc/import/imported_mesh.h"
+
+#include <filesystem>
+
+namespace penumbra {
+
+// The format follows the extension. Any bytes give a mesh or an Error that names the place. The
+// mesh may have no triangles, degenerate ones and missing normals: assetc/import/clean.h comes
+// next.
+Result<ImportedMesh> importMesh(const std::filesystem::path& path);
+
+} // namespace penumbra

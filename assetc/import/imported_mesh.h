@@ -1,0 +1,20 @@
+// What an importer hands on: triangles in the file's world space, not yet cleaned.
+#pragma once
+
+#include "assets/mesh_asset.h"
+
+#include <string>
+#include <vector>
+
+namespace penumbra {
+
+struct ImportedMesh {
+    MeshAsset mesh; // positions, normals, indices, albedo and name; a normal of 0 is one that the
+                    // file lacks
+    std::vector<std::string> warnings;
+};
+
+// The largest input file, and the largest sum of the buffers that it names.
+constexpr std::uint64_t kMaxSourceBytes = 1ull << 30;
+
+} // namespace penumbra

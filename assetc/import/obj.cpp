@@ -1,0 +1,187 @@
+#include "assetc/import/obj.h"
+
+#include "assetc/import/folder.h"
+#include "runtime/file.h"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <tiny_obj_loader.h>
+#include <unordered_map>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::uint64_t kMaxMaterialBytes = 16u << 20;
+
+Result<std::string> readText(const std::filesystem::path& path, std::uint64_t maxBytes)
+{
+    const auto bytes = readFile(path, maxBytes);
+    if (!bytes)
+        return bytes.error();
+    return std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+}
+
+// Reads material libraries inside the folder; another one costs the colours, with a warning, not
+// the mesh.
+class ConfinedMaterialReader : public tinyobj::MaterialReader {
+public:
+    ConfinedMaterialReader(std::filesystem::path folder, std::vector<std::string>& warnings)
+        : m_folder(std::move(folder)), m_warnings(warnings)
+    {}
+
+    bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                    std::map<std::string, int>* indexOf, std::string* warning,
+                    std::string* error) override
+    {
+        const auto path = resolveInFolder(m_folder, name);
+        const auto text = path ? readText(*path, kMaxMaterialBytes) : path.error();
+        if (!text) {
+            m_warnings.push_back("material library not read: " + text.error().message);
+            return false;
+        }
+        std::istringstream stream(*text);
+        tinyobj::LoadMtl(indexOf, materials, &stream, warning, error);
+        return true;
+    }
+
+private:
+    std::filesystem::path m_folder;
+    std::vector<std::string>& m_warnings;
+};
+
+struct ObjFile {
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+    std::vector<tinyobj::material_t> materials;
+};
+
+Result<ObjFile> parse(const std::string& text, tinyobj::MaterialReader* materials, bool triangulate)
+{
+    ObjFile file;
+    std::istringstream stream(text);
+    std::string warning;
+    std::string error;
+    if (!tinyobj::LoadObj(&file.attributes, &file.shapes, &file.materials, &warning, &error,
+                          &stream, materials, triangulate)) {
+        while (!error.empty() && (error.back() == '\n' || error.back() == ' '))
+            error.pop_back();
+        return Error{"not a readable OBJ file: " + error.substr(0, 400)};
+    }
+    return file;
+}
+
+// Sets `allTriangles` where no face needs triangulation.
+Result<void> checkIndices(const ObjFile& file, bool& allTriangles)
+{
+    const auto vertexCount = static_cast<std::int64_t>(file.attributes.vertices.size() / 3);
+    const auto normalCount = static_cast<std::int64_t>(file.attributes.normals.size() / 3);
+    allTriangles = true;
+    for (const tinyobj::shape_t& shape : file.shapes) {
+        std::size_t corners = 0;
+        for (const std::size_t count : shape.mesh.num_face_vertices) {
+            corners += count;
+            allTriangles = allTriangles && count == 3;
+        }
+        if (corners != shape.mesh.indices.size()) // the loader counts corners in 8 bits
+            return Error{
+                fmt::format("group \"{}\": a face with more than 255 corners", shape.name)};
+        for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
+            const tinyobj::index_t& index = shape.mesh.indices[i];
+            if (index.vertex_index < 0 || index.vertex_index >= vertexCount)
+                return Error{fmt::format("group \"{}\": corner {} is vertex {} of {}", shape.name,
+                                         i, index.vertex_index + 1, vertexCount)};
+            if (index.normal_index < -1 || index.normal_index >= normalCount)
+                return Error{fmt::format("group \"{}\": corner {} has normal {} of {}", shape.name,
+                                         i, index.normal_index + 1, normalCount)};
+        }
+    }
+    return {};
+}
+
+vec3 vectorAt(const std::vector<float>& values, int index)
+{
+    const std::size_t at = 3 * static_cast<std::size_t>(index);
+    return {values[at], values[at + 1], values[at + 2]};
+}
+
+Result<void> addFaces(const ObjFile& file, MeshAsset& mesh)
+{
+    std::unordered_map<std::uint64_t, std::uint32_t>
+        vertexOf;                // (position, normal) of the file -> vertex
+    std::map<int, double> areas; // by material
+    for (const tinyobj::shape_t& shape : file.shapes) {
+        if (mesh.indices.size() / 3 + shape.mesh.indices.size() / 3 > kMaxMeshTriangles)
+            return Error{
+                fmt::format("more than {} triangles; simplify the mesh", kMaxMeshTriangles)};
+        for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
+            const tinyobj::index_t& index = shape.mesh.indices[i];
+            const std::uint64_t key = static_cast<std::uint64_t>(index.vertex_index) << 32 |
+                                      static_cast<std::uint32_t>(index.normal_index);
+            const auto [found, isNew] =
+                vertexOf.emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
+            if (isNew) {
+                mesh.positions.push_back(vectorAt(file.attributes.vertices, index.vertex_index));
+                mesh.normals.push_back(index.normal_index < 0
+                                           ? vec3{0}
+                                           : vectorAt(file.attributes.normals, index.normal_index));
+            }
+            mesh.indices.push_back(found->second);
+            if (i % 3 == 2) {
+                const vec3* p = mesh.positions.data();
+                const std::size_t end = mesh.indices.size();
+                const vec3 a = p[mesh.indices[end - 3]];
+                const std::size_t face = i / 3;
+                const int material =
+                    face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
+                areas[material] +=
+                    length(cross(p[mesh.indices[end - 2]] - a, p[mesh.indices[end - 1]] - a));
+            }
+        }
+    }
+    const auto largest =
+        std::max_element(areas.begin(), areas.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (largest != areas.end() && largest->first >= 0 &&
+        static_cast<std::size_t>(largest->first) < file.materials.size())
+        for (int c = 0; c < 3; ++c)
+            mesh.material.albedo[c] = clamp(
+                file.materials[static_cast<std::size_t>(largest->first)].diffuse[c], 0.0f, 1.0f);
+    return {};
+}
+
+} // namespace
+
+Result<ImportedMesh> importObj(const std::filesystem::path& path)
+{
+    const auto text = readText(path, kMaxSourceBytes);
+    if (!text)
+        return text.error();
+    ImportedMesh out;
+    ConfinedMaterialReader materials(path.parent_path(), out.warnings);
+    auto file = parse(*text, &materials, false);
+    if (!file)
+        return file.error();
+    bool allTriangles = true;
+    if (const auto checked = checkIndices(*file, allTriangles); !checked)
+        return checked.error();
+    if (!allTriangles) {
+        // The loader's triangulation reads vertices unchecked, so it runs on a file whose indices
+        // are known to be good.
+        std::vector<std::string> repeated;
+        ConfinedMaterialReader again(path.parent_path(), repeated);
+        file = parse(*text, &again, true);
+        if (!file)
+            return file.error();
+        if (const auto checked = checkIndices(*file, allTriangles); !checked)
+            return checked.error();
+        if (!allTriangles)
+            return Error{"a face could not be triangulated"};
+    }
+    if (const auto added = addFaces(*file, out.mesh); !added)
+        return added.error();
+    return out;
+}
+
+} // namespace penumbra

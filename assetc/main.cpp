@@ -1,0 +1,112 @@
+// assetc: the command line of the asset compiler. Says what was asked; assetc/commands does it.
+#include "assetc/commands/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+namespace penumbra {
+
+namespace {
+
+std::string checkSide(const std::string& text)
+{
+    for (unsigned side = 3; side <= kMaxFieldSide; side = 2 * side - 1)
+        if (text == std::to_string(side))
+            return {};
+    return fmt::format("{} is not 2^k + 1 from 3 to {}", text, kMaxFieldSide);
+}
+
+std::string checkEven(const std::string& text)
+{
+    return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string() : text + " is not even";
+}
+
+int run(int argc, char** argv)
+{
+    CLI::App app("assetc: compiles meshes and environment maps into Penumbra's assets");
+    app.require_subcommand(1);
+    app.failure_message(CLI::FailureMessage::simple);
+
+    BakeArguments bake;
+    unsigned jobs = 0;
+    bool noField = false;
+    CLI::App* bakeCommand =
+        app.add_subcommand("bake", "Compile a .glb, .gltf or .obj into a mesh asset");
+    bakeCommand->add_option("IN", bake.input, ".glb, .gltf or .obj")->required();
+    bakeCommand->add_option("-o,--output", bake.output, "OUT.glb")->required();
+    bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
+        ->check(CLI::Range(2u, kMaxFieldShells))
+        ->capture_default_str();
+    bakeCommand
+        ->add_option("--max-side", bake.options.bake.side, "Nodes along a shell's edge, 2^k + 1")
+        ->check(CLI::Validator(checkSide, "2^k+1"))
+        ->capture_default_str();
+    bakeCommand
+        ->add_option("--directions", bake.options.bake.directions, "Directions per sample, even")
+        ->check(CLI::Range(2u, 65536u))
+        ->check(CLI::Validator(checkEven, "even"))
+        ->capture_default_str();
+    CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
+    bakeCommand
+        ->add_flag("--verify", bake.options.verify,
+                   "Compare a sample of the field with traced rays")
+        ->excludes(noFieldFlag);
+    bakeCommand->add_option("--jobs", jobs, "Threads; all processors by default")
+        ->check(CLI::Range(1u, 1024u));
+    bakeCommand->add_option("--report", bake.report, "Write what was done as JSON");
+
+    EnvironmentArguments environment;
+    CLI::App* environmentCommand = app.add_subcommand(
+        "environment", "Compile an equirectangular .hdr or .exr into an environment");
+    environmentCommand->add_option("IN", environment.input, ".hdr or .exr")->required();
+    environmentCommand->add_option("-o,--output", environment.output, "OUT.env")->required();
+    environmentCommand->add_option("--report", environment.report, "Write what was done as JSON");
+
+    std::filesystem::path file;
+    bool json = false;
+    CLI::App* inspectCommand = app.add_subcommand("inspect", "Say what is in a compiled asset");
+    CLI::App* validateCommand =
+        app.add_subcommand("validate", "Check a compiled asset: exit code 0 valid, 1 invalid");
+    for (CLI::App* command : {inspectCommand, validateCommand}) {
+        command->add_option("FILE", file, ".glb or .env")->required();
+        command->add_flag("--json", json, "As JSON");
+    }
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? kExitDone : kExitUsage; // 0: help was asked for
+    }
+    std::optional<tbb::global_control> limit;
+    if (jobs > 0)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, jobs);
+    if (*bakeCommand) {
+        bake.options.bake.field = !noField;
+        return runBake(bake);
+    }
+    if (*environmentCommand)
+        return runEnvironment(environment);
+    return *inspectCommand ? runInspect(file, json) : runValidate(file, json);
+}
+
+} // namespace
+
+} // namespace penumbra
+
+int main(int argc, char** argv)
+{
+    spdlog::set_default_logger(spdlog::stderr_logger_st("assetc"));
+    spdlog::set_pattern("%n: %l: %v");
+    try {
+        return penumbra::run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        spdlog::error("out of memory; the input is too large for this machine");
+        return penumbra::kExitInput;
+    } catch (const std::exception& exception) {
+        spdlog::critical("bug: {}", exception.what());
+        return penumbra::kExitBug;
+    }
+}

@@ -1,0 +1,18 @@
+// What assetc says about assets: for programs as JSON, for people as text.
+#pragma once
+
+#include "assetc/compile.h"
+#include "assets/environment.h"
+
+#include <string>
+
+namespace penumbra {
+
+// JSON of `assetc bake --report`; ends in a line feed.
+std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset);
+
+// `assetc inspect`, JSON or lines of text; `fileBytes` is the size of the file.
+std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool json);
+std::string describeEnvironment(const Environment& environment, std::size_t fileBytes, bool json);
+
+} // namespace penumbra

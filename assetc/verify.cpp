@@ -1,0 +1,158 @@
+#include "assetc/verify.h"
+
+#include "assetc/bake/directions.h"
+#include "shaders/shared/field.h"
+
+#include <embree3/rtcore.h>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+#include <random>
+#include <tbb/parallel_for.h>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::size_t kPacket = 16;
+
+struct EmbreeScene {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    explicit EmbreeScene(const MeshAsset& mesh)
+        : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device))
+    {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* vertices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                    sizeof(vec3), mesh.positions.size());
+        void* indices =
+            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), mesh.indices.size() / 3);
+        PENUMBRA_ASSERT(vertices && indices, "Embree: error {}",
+                        static_cast<int>(rtcGetDeviceError(device)));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<vec3*>(vertices));
+        std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST); // no ray slips through an edge
+        rtcCommitScene(scene);
+    }
+    EmbreeScene(const EmbreeScene&) = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+    ~EmbreeScene()
+    {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+};
+
+// Visibility at a point in SH: unoccluded minus the blocked directions.
+Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
+                    const std::vector<Sh4>& basis)
+{
+    std::array<double, 16> blocked{};
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t first = 0; first < directions.size(); first += kPacket) {
+        alignas(64) RTCRay16 rays{};
+        alignas(64) std::array<int, kPacket> valid{};
+        const std::size_t count = std::min(kPacket, directions.size() - first);
+        for (std::size_t k = 0; k < count; ++k) {
+            const vec3 d = directions[first + k];
+            valid[k] = -1;
+            rays.org_x[k] = origin.x;
+            rays.org_y[k] = origin.y;
+            rays.org_z[k] = origin.z;
+            rays.dir_x[k] = d.x;
+            rays.dir_y[k] = d.y;
+            rays.dir_z[k] = d.z;
+            rays.tfar[k] = std::numeric_limits<float>::infinity();
+            rays.mask[k] = ~0u;
+        }
+        rtcOccluded16(valid.data(), scene, &context, &rays);
+        for (std::size_t k = 0; k < count; ++k)
+            if (rays.tfar[k] < 0) // Embree's mark of a hit
+                for (std::size_t i = 0; i < blocked.size(); ++i)
+                    blocked[i] += basis[first + k].c[i];
+    }
+    Sh4 visibility{};
+    const double weight = 4 * glm::pi<double>() / static_cast<double>(directions.size());
+    for (std::size_t i = 0; i < blocked.size(); ++i)
+        visibility.c[i] = static_cast<float>((i == 0 ? kSqrt4Pi : 0.0) - weight * blocked[i]);
+    return visibility;
+}
+
+// A drawn sample: where it lies and what the field stores there.
+struct Sample {
+    vec3 position{0}; // object space, metres
+    float radius = 0; // bounding radii
+    Sh4 stored{};
+};
+
+Sample drawSample(const ShadowField& field, std::mt19937& random)
+{
+    const std::size_t shell = random() % field.shellSides.size();
+    const std::size_t side = field.shellSides[shell];
+    const std::size_t x = random() % side;
+    const std::size_t y = random() % side;
+    std::size_t node = y * side + x;
+    for (std::size_t s = 0; s < shell; ++s)
+        node += std::size_t{field.shellSides[s]} * field.shellSides[s];
+
+    Sample sample;
+    const float last = static_cast<float>(field.shellSides.size() - 1);
+    sample.radius = field.innerRadius * std::pow(field.outerRadius / field.innerRadius,
+                                                 static_cast<float>(shell) / last);
+    const vec2 uv =
+        vec2(static_cast<float>(x), static_cast<float>(y)) / static_cast<float>(side - 1);
+    sample.position = field.center + field.radius * sample.radius * octahedralDirection(uv);
+    for (int i = 0; i < 16; ++i)
+        sample.stored.c[i] =
+            static_cast<float>(field.texels[node * 16 + static_cast<std::size_t>(i)]) - 128.0f;
+    const std::array<float, 4>& k = field.bandScale;
+    sample.stored = fieldVisibility(sample.stored, vec4(k[0], k[1], k[2], k[3]) *
+                                                       fieldDecay(sample.radius * sample.radius));
+    return sample;
+}
+
+} // namespace
+
+Result<VerifyReport> verifyBake(const MeshAsset& mesh, const VerifyOptions& options)
+{
+    if (!mesh.field || mesh.field->kind != FieldKind::Occlusion || mesh.field->directions < 2 ||
+        mesh.field->directions % 2 != 0)
+        return Error{"no occlusion field to verify"};
+    const ShadowField& field = *mesh.field;
+    const std::vector<vec3> directions = bakeDirections(field.directions);
+    std::vector<Sh4> basis;
+    for (const vec3 direction : directions)
+        basis.push_back(shBasis(direction));
+
+    std::mt19937 random(options.seed);
+    std::vector<Sample> samples;
+    for (std::uint32_t i = 0; i < options.samples; ++i)
+        samples.push_back(drawSample(field, random));
+    const EmbreeScene embree(mesh);
+    std::vector<Sh4> traced(samples.size());
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+        traced[i] = traceVisibility(embree.scene, samples[i].position, directions, basis);
+    });
+
+    VerifyReport report{options.samples, field.directions};
+    double squares = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        for (int k = 0; k < 16; ++k) {
+            const float difference = std::abs(samples[i].stored.c[k] - traced[i].c[k]);
+            squares += static_cast<double>(difference) * difference;
+            if (difference > report.max) {
+                report.max = difference;
+                report.worstRadius = samples[i].radius;
+            }
+        }
+    report.rms = static_cast<float>(std::sqrt(squares / (16.0 * std::max(options.samples, 1u))));
+    return report;
+}
+
+} // namespace penumbra

@@ -1,0 +1,179 @@
+#include "demo/reference/reference.h"
+
+#include "demo/reference/sampling.h"
+
+#include <bit>
+#include <chrono>
+#include <numeric>
+#include <tbb/parallel_for.h>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::size_t kGrain = 16; // receivers per task: some milliseconds
+
+struct Point {
+    glm::dvec3 shadowed{0}, unshadowed{0};
+    std::uint64_t rays = 0;
+};
+
+class Integrator {
+public:
+    Integrator(const ReferenceScene& scene, const ReferenceLight& light,
+               const ReferenceOptions& options)
+        : m_scene(scene), m_light(light), m_seed(options.seed),
+          m_points(makeSamplePoints(std::bit_ceil(std::max(options.samples, 2u)) / 2))
+    {}
+
+    // `origin` is off the surface already.
+    [[nodiscard]] Point shade(vec3 origin, const ReferenceReceiver& receiver,
+                              std::size_t index) const
+    {
+        Point point;
+        if (m_light.black())
+            return point;
+        const MeshMaterial& material = m_scene.materials()[receiver.material];
+        const Reflectance reflectance(receiver.normal, receiver.toEye, material);
+        const auto count = static_cast<float>(m_points.size());
+        Pending pending;
+        pending.packet.origin = origin;
+
+        const auto add = [&](vec3 direction, const ReferenceLight::Value& light,
+                             const Reflectance::Value& r) {
+            const vec3 contribution = light.radiance * (r.f / (count * (light.pdf + r.pdf)));
+            point.unshadowed += glm::dvec3(contribution);
+            pending.packet.directions[pending.packet.count] = direction;
+            pending.contributions[pending.packet.count] = contribution;
+            if (++pending.packet.count == ShadowPacket::kSize)
+                flush(pending, point);
+        };
+        const glm::uvec2 lightShift = shift(index, 0), reflectanceShift = shift(index, 1);
+        for (const glm::uvec2 p : m_points) {
+            const ReferenceLight::Sample sample = m_light.sample(scramble(p, lightShift));
+            const Reflectance::Value r = reflectance.evaluate(sample.direction);
+            if (r.f > 0.0f)
+                add(sample.direction, m_light.evaluate(sample), r);
+        }
+        for (const glm::uvec2 p : m_points) {
+            const vec3 direction = reflectance.sample(scramble(p, reflectanceShift));
+            const Reflectance::Value r = reflectance.evaluate(direction);
+            if (r.f > 0.0f)
+                add(direction, m_light.evaluate(direction), r);
+        }
+        flush(pending, point);
+        point.shadowed *= glm::dvec3(material.albedo);
+        point.unshadowed *= glm::dvec3(material.albedo);
+        return point;
+    }
+
+private:
+    struct Pending {
+        ShadowPacket packet;
+        std::array<vec3, ShadowPacket::kSize> contributions{};
+    };
+
+    void flush(Pending& pending, Point& point) const
+    {
+        if (pending.packet.count == 0)
+            return;
+        m_scene.occluded(pending.packet);
+        for (int i = 0; i < pending.packet.count; ++i)
+            if (pending.packet.visible[i])
+                point.shadowed += glm::dvec3(pending.contributions[i]);
+        point.rays += static_cast<std::uint64_t>(pending.packet.count);
+        pending.packet.count = 0;
+    }
+
+    [[nodiscard]] glm::uvec2 shift(std::size_t index, std::uint32_t stream) const
+    {
+        const std::uint32_t base =
+            hashBits(static_cast<std::uint32_t>(index) + hashBits(2 * m_seed + stream + 1));
+        return {base, hashBits(base + 0x9e3779b9u)};
+    }
+
+    const ReferenceScene& m_scene;
+    const ReferenceLight& m_light;
+    std::uint32_t m_seed;
+    std::vector<glm::uvec2> m_points; // one half of the samples; the other half has other shifts
+};
+
+// Calls shadeOne(i) -> Point for all i < count in parallel and fills the arrays.
+template <class F>
+ReferenceRadiance shadeAll(std::size_t count, const F& shadeOne)
+{
+    const auto start = std::chrono::steady_clock::now();
+    ReferenceRadiance result;
+    result.shadowed.resize(count);
+    result.unshadowed.resize(count);
+    std::vector<std::uint64_t> rays((count + kGrain - 1) / kGrain);
+    tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t block) {
+        for (std::size_t i = block * kGrain; i < std::min(count, (block + 1) * kGrain); ++i) {
+            const Point point = shadeOne(i);
+            result.shadowed[i] = vec3(point.shadowed);
+            result.unshadowed[i] = vec3(point.unshadowed);
+            rays[block] += point.rays;
+        }
+    });
+    result.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+float offsetOf(const ReferenceScene& scene, std::uint32_t instance, const ReferenceOptions& options)
+{
+    if (instance == kNoInstance)
+        return 0.0f;
+    return min(options.offset * scene.instanceRadius(instance), options.maxOffset);
+}
+
+vec3 pixelDirection(const ReferenceCamera& camera, std::size_t pixel)
+{
+    const vec2 size(camera.width, camera.height);
+    const vec2 ndc = 2.0f * (vec2(pixel % camera.width, pixel / camera.width) + 0.5f) / size - 1.0f;
+    const vec4 middle =
+        camera.worldFromClip * vec4(ndc, 0.5f, 1.0f); // finite for both directions of depth
+    return normalize(vec3(middle) / middle.w - camera.eye);
+}
+
+} // namespace
+
+ReferenceRadiance shadeReference(const ReferenceScene& scene, const ReferenceLight& light,
+                                 std::span<const ReferenceReceiver> receivers,
+                                 const ReferenceOptions& options)
+{
+    for (const ReferenceReceiver& r : receivers)
+        PENUMBRA_ASSERT(r.material < scene.materials().size(), "material {} of {}", r.material,
+                        scene.materials().size());
+    const Integrator integrator(scene, light, options);
+    return shadeAll(receivers.size(), [&](std::size_t i) {
+        const ReferenceReceiver& r = receivers[i];
+        return integrator.shade(r.position + offsetOf(scene, r.instance, options) * r.normal, r, i);
+    });
+}
+
+ReferencePicture renderReference(const ReferenceScene& scene, const ReferenceLight& light,
+                                 const ReferenceCamera& camera, const ReferenceOptions& options)
+{
+    const std::size_t count = std::size_t{camera.width} * camera.height;
+    const Integrator integrator(scene, light, options);
+    ReferencePicture picture;
+    picture.instance.assign(count, kNoInstance);
+    picture.radiance = shadeAll(count, [&](std::size_t i) {
+        const vec3 direction = pixelDirection(camera, i);
+        const ReferenceHit hit = scene.closest(camera.eye, direction);
+        if (!hit.hit) {
+            const glm::dvec3 sky(light.evaluate(direction).radiance);
+            return Point{sky, sky, 0};
+        }
+        picture.instance[i] = hit.instance;
+        const ReferenceReceiver receiver{hit.position, hit.normal, -direction,
+                                         scene.instances()[hit.instance].material, hit.instance};
+        const float distance = offsetOf(scene, hit.instance, options);
+        return integrator.shade(hit.position + distance * hit.faceNormal, receiver, i);
+    });
+    return picture;
+}
+
+} // namespace penumbra

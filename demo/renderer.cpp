@@ -1,0 +1,98 @@
+#include "demo/renderer.h"
+
+#include "runtime/vk/transfer.h"
+
+#include <cstring>
+
+namespace penumbra {
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const DemoScene& scene, SceneData data,
+                                                   const RendererOptions& options)
+{
+    std::unique_ptr<Renderer> renderer(new Renderer(device));
+    Result<FramePasses> passes = createFramePasses(device);
+    if (!passes)
+        return passes.error();
+    renderer->m_passes = std::move(*passes);
+    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(data), scene.environment, renderer->m_ring.framesInFlight());
+    if (!gpuScene)
+        return gpuScene.error();
+    renderer->m_scene = std::move(*gpuScene);
+    renderer->m_light = environmentLight(scene.ground ? aboveGround(scene.environment) : scene.environment, scene.intensity);
+    renderer->m_backgroundIntensity = scene.intensity;
+    renderer->m_exposure = scene.exposure;
+    if (Result<void> sized = renderer->resize(options.extent); !sized)
+        return sized.error();
+    return renderer;
+}
+
+FrameConstants Renderer::constants(const View& view) const
+{
+    return frameConstants(view, m_light, m_backgroundIntensity);
+}
+
+Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool combine)
+{
+    if (kernel != m_kernel)
+        m_scene.touchAll(); // each kernel has constants of its own
+    m_kernel = kernel;
+    Result<GpuFrame> frame = m_ring.beginFrame();
+    if (frame)
+        recordFrame(*frame, m_passes, m_scene, constants(view), {kernel, combine, m_exposure}, m_targets);
+    return frame;
+}
+
+Result<void> Renderer::endFrame(std::span<const VkSemaphoreSubmitInfo> waits, std::span<const VkSemaphoreSubmitInfo> signals)
+{
+    return m_ring.endFrame(waits, signals);
+}
+
+Result<void> Renderer::drawFrame(const View& view, Kernel kernel, bool combine)
+{
+    if (Result<GpuFrame> frame = beginFrame(view, kernel, combine); !frame)
+        return frame.error();
+    if (Result<void> ended = endFrame(); !ended)
+        return ended;
+    if (Result<void> done = m_ring.waitIdle(); !done)
+        return done;
+    m_zoneMs.clear();
+    for (const ZoneTime& zone : m_ring.zoneTimes())
+        m_zoneMs[zone.name] += zone.milliseconds;
+    return {};
+}
+
+Result<void> Renderer::resize(VkExtent2D extent)
+{
+    Result<FrameTargets> targets = createFrameTargets(m_device, m_passes, extent);
+    if (!targets)
+        return targets.error();
+    m_ring.retire(std::exchange(m_targets, std::move(*targets)));
+    return {};
+}
+
+Result<Image8> Renderer::capture() const
+{
+    Result<std::vector<std::byte>> pixels = readBack(m_device, m_targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    if (!pixels)
+        return pixels.error();
+    Image8 image = makeImage(extent().width, extent().height);
+    std::memcpy(image.rgba.data(), pixels->data(), image.rgba.size());
+    return image;
+}
+
+Result<std::vector<vec4>> Renderer::radiance() const { return readBackAs<vec4>(m_device, m_scene.buffers().radiance); }
+
+Result<CullResult> Renderer::cullResult() const
+{
+    Result<std::vector<CullResult>> result = readBackAs<CullResult>(m_device, m_scene.buffers().cull);
+    if (!result)
+        return result.error();
+    return result->front();
+}
+
+Result<void> Renderer::setRadiance(std::span<const vec4> radiance)
+{
+    return upload(m_device, m_scene.buffers().radiance, std::as_bytes(radiance));
+}
+
+} // namespace penumbra

@@ -1,0 +1,65 @@
+// A scene on a device: draws frames, times them, and hands out pictures and radiance. Used by all modes of the demo.
+#pragma once
+
+#include "demo/image/image.h"
+#include "demo/scene.h"
+#include "runtime/vk/device.h"
+#include "systems/frame.h"
+#include "systems/techniques/shadow_fields/combine_cpu.h"
+
+#include <map>
+
+namespace penumbra {
+
+struct RendererOptions {
+    VkExtent2D extent{1280, 720};
+    std::uint32_t framesInFlight = 2;
+};
+
+class Renderer {
+public:
+    // `scene`'s environment and the instances of `data`; the device outlives the renderer.
+    static Result<std::unique_ptr<Renderer>> create(const Device& device, const DemoScene& scene, SceneData data,
+                                                    const RendererOptions& options);
+
+    // Begins a frame, records it up to the display image, and leaves the command buffer open: end it with endFrame, or
+    // record a copy of display() first.
+    Result<GpuFrame> beginFrame(const View& view, Kernel kernel, bool combine = true);
+    Result<void> endFrame(std::span<const VkSemaphoreSubmitInfo> waits = {}, std::span<const VkSemaphoreSubmitInfo> signals = {});
+
+    // A whole frame, finished when this returns. Its zone times are in zoneMs().
+    Result<void> drawFrame(const View& view, Kernel kernel, bool combine = true);
+    [[nodiscard]] const std::map<std::string, double>& zoneMs() const { return m_zoneMs; }
+
+    Result<void> resize(VkExtent2D extent);
+    [[nodiscard]] VkExtent2D extent() const { return m_targets.display.extent; }
+
+    // Of the last finished frame.
+    Result<Image8> capture() const;
+    Result<std::vector<vec4>> radiance() const; // [SceneData::radianceCount]
+    Result<CullResult> cullResult() const;
+
+    // Radiance from elsewhere, for drawFrame(…, combine = false).
+    Result<void> setRadiance(std::span<const vec4> radiance);
+
+    [[nodiscard]] GpuScene& scene() { return m_scene; }
+    [[nodiscard]] const LightSh& light() const { return m_light; }
+    [[nodiscard]] FrameConstants constants(const View& view) const;
+    [[nodiscard]] const Image& display() const { return m_targets.display; }
+    [[nodiscard]] FrameRing& ring() { return m_ring; }
+
+private:
+    explicit Renderer(const Device& device) : m_device(device), m_ring(device) {}
+
+    const Device& m_device;
+    FramePasses m_passes;
+    FrameTargets m_targets;
+    GpuScene m_scene;
+    FrameRing m_ring;
+    LightSh m_light{};
+    float m_backgroundIntensity = 1, m_exposure = 1;
+    Kernel m_kernel = Kernel::Exact;
+    std::map<std::string, double> m_zoneMs;
+};
+
+} // namespace penumbra

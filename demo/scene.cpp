@@ -1,0 +1,41 @@
+#include "demo/scene.h"
+
+#include "demo/scenes/falling.h"
+#include "runtime/file.h"
+
+#include <fmt/ranges.h>
+
+namespace penumbra {
+
+std::span<const SceneEntry> sceneEntries()
+{
+    static constexpr SceneEntry kScenes[] = {
+        {"falling", "20 objects of 8 shapes fall on a floor, collide and come to rest", loadFallingScene},
+    };
+    return kScenes;
+}
+
+Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options)
+{
+    std::vector<std::string_view> names;
+    for (const SceneEntry& entry : sceneEntries()) {
+        if (entry.name == name)
+            return entry.load(options);
+        names.push_back(entry.name);
+    }
+    return Error{fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
+}
+
+Result<Environment> loadEnvironment(const std::filesystem::path& path)
+{
+    constexpr std::uint64_t kMaxBytes = 16u << 20; // a .env of the largest map takes 1 MiB
+    Result<std::vector<std::byte>> bytes = readFile(path, kMaxBytes);
+    if (!bytes)
+        return bytes.error();
+    Result<Environment> environment = decodeEnvironment(*bytes);
+    if (!environment)
+        return fail(environment.error(), path.string());
+    return environment;
+}
+
+} // namespace penumbra

@@ -1,0 +1,46 @@
+// A scene of the demo: a world with its bodies, assets, light and camera.
+#pragma once
+
+#include "assets/asset_store.h"
+#include "assets/environment.h"
+#include "runtime/ecs/world.h"
+#include "systems/components.h"
+#include "systems/physics/physics_world.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace penumbra {
+
+struct DemoScene {
+    std::string name;
+    AssetStore assets;
+    ecs::World world;
+    std::optional<PhysicsWorld> physics;
+    Environment environment;     // the whole map, for the background
+    bool ground = false;         // y < 0 is solid: light comes from above the horizon only
+    float intensity = 1;         // of the environment
+    float exposure = 1;          // display value per W/(m² sr)
+    Camera camera;
+};
+
+struct SceneOptions {
+    std::filesystem::path assets; // folder of compiled assets
+    std::uint64_t seed = 1;
+};
+
+struct SceneEntry {
+    std::string_view name, description;
+    Result<std::unique_ptr<DemoScene>> (*load)(const SceneOptions& options);
+};
+std::span<const SceneEntry> sceneEntries();
+
+// Error: no such scene, the message lists all; or an asset that is missing or damaged.
+Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
+
+Result<Environment> loadEnvironment(const std::filesystem::path& path);
+
+} // namespace penumbra

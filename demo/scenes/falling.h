@@ -1,0 +1,10 @@
+// Tamura et al. 2006, third scene: 20 dynamic objects under an environment map, at least 88,739 vertices in all.
+#pragma once
+
+#include "demo/scene.h"
+
+namespace penumbra {
+
+Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options);
+
+} // namespace penumbra

@@ -1,0 +1,254 @@
+#include "demo/window.h"
+
+#include "demo/renderer.h"
+#include "demo/simulation.h"
+#include "runtime/vk/barriers.h"
+#include "runtime/vk/instance.h"
+#include "runtime/vk/swapchain.h"
+
+#include <chrono>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace penumbra {
+
+namespace {
+
+struct Glfw {
+    bool ready = false;
+    GLFWwindow* window = nullptr;
+    ~Glfw()
+    {
+        if (window)
+            glfwDestroyWindow(window);
+        if (ready)
+            glfwTerminate();
+    }
+};
+
+struct Surface {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkSurfaceKHR handle = VK_NULL_HANDLE;
+    ~Surface()
+    {
+        if (handle)
+            vkDestroySurfaceKHR(instance, handle, nullptr);
+    }
+};
+
+// What the mouse and keyboard change.
+struct Controls {
+    Camera camera;
+    double cursorX = 0, cursorY = 0;
+    bool paused = false, restart = false;
+    Kernel kernel = Kernel::Exact;
+};
+
+constexpr float kRadiansPerPixel = 0.006f;
+
+void onCursor(GLFWwindow* window, double x, double y)
+{
+    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
+    const auto dx = static_cast<float>(x - c.cursorX), dy = static_cast<float>(y - c.cursorY);
+    c.cursorX = x;
+    c.cursorY = y;
+    Camera& camera = c.camera;
+    if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
+        camera.yaw -= dx * kRadiansPerPixel;
+        camera.pitch = std::clamp(camera.pitch + dy * kRadiansPerPixel, 0.02f, 1.5f); // stays above the floor
+    } else if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
+        const float metresPerPixel = camera.distance * 0.001f;
+        camera.target += metresPerPixel * (-dx * vec3(std::cos(camera.yaw), 0, -std::sin(camera.yaw)) + dy * vec3(0, 1, 0));
+        camera.target.y = std::max(camera.target.y, 0.0f);
+    }
+}
+
+void onScroll(GLFWwindow* window, double, double steps)
+{
+    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
+    c.camera.distance = std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
+}
+
+void onKey(GLFWwindow* window, int key, int, int action, int)
+{
+    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
+    if (action != GLFW_PRESS)
+        return;
+    if (key == GLFW_KEY_ESCAPE)
+        glfwSetWindowShouldClose(window, GLFW_TRUE);
+    else if (key == GLFW_KEY_SPACE)
+        c.paused = !c.paused;
+    else if (key == GLFW_KEY_R)
+        c.restart = true;
+    else if (key == GLFW_KEY_K)
+        c.kernel = c.kernel == Kernel::Exact ? Kernel::Literal : Kernel::Exact;
+}
+
+VkExtent2D framebufferExtent(GLFWwindow* window)
+{
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    return {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+}
+
+Result<GLFWwindow*> openWindow(Glfw& glfw, const DemoOptions& options)
+{
+    if (!glfwInit()) {
+        const char* reason = nullptr;
+        glfwGetError(&reason);
+        return Error{fmt::format("no display ({}); add --headless to render to files", reason ? reason : "GLFW gives no reason")};
+    }
+    glfw.ready = true;
+    if (!glfwVulkanSupported())
+        return Error{"no Vulkan driver; install mesa-vulkan-drivers or the driver of your GPU"};
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    glfw.window = glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), "Penumbra", nullptr, nullptr);
+    if (!glfw.window)
+        return Error{"the display refuses a window; add --headless to render to files"};
+    return glfw.window;
+}
+
+void copyToWindow(VkCommandBuffer cmd, const Image& display, const Swapchain& swapchain)
+{
+    transitionImage(cmd, swapchain.image(), VK_IMAGE_ASPECT_COLOR_BIT, kUndefinedImage, kCopyTarget);
+    const auto corner = [](VkExtent2D e) { return VkOffset3D{static_cast<int>(e.width), static_cast<int>(e.height), 1}; };
+    const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageBlit blit{layers, {{}, corner(display.extent)}, layers, {{}, corner(swapchain.extent())}};
+    vkCmdBlitImage(cmd, display.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, swapchain.image(),
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
+    transitionImage(cmd, swapchain.image(), VK_IMAGE_ASPECT_COLOR_BIT, kCopyTarget, kPresent);
+}
+
+// A scene and all that is made for it; made anew at every restart.
+struct Show {
+    std::unique_ptr<DemoScene> scene;
+    std::unique_ptr<Renderer> renderer;
+    std::unique_ptr<Simulation> simulation;
+};
+
+Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent2D extent)
+{
+    Show show;
+    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed});
+    if (!scene)
+        return scene.error();
+    show.scene = std::move(*scene);
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(device, *show.scene, extractScene(show.scene->world, show.scene->assets), {.extent = extent});
+    if (!renderer)
+        return renderer.error();
+    show.renderer = std::move(*renderer);
+    show.simulation = std::make_unique<Simulation>(*show.scene);
+    return show;
+}
+
+// Frames per second in the title, twice a second.
+class TitleClock {
+public:
+    void frame(GLFWwindow* window, const std::string& scene, Kernel kernel)
+    {
+        ++m_frames;
+        const double seconds = std::chrono::duration<double>(Clock::now() - m_start).count();
+        if (seconds < 0.5)
+            return;
+        glfwSetWindowTitle(window, fmt::format("Penumbra - {} - {} - {:.0f} fps", scene, kernelName(kernel), m_frames / seconds).c_str());
+        m_frames = 0;
+        m_start = Clock::now();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point m_start = Clock::now();
+    int m_frames = 0;
+};
+
+} // namespace
+
+Result<void> runWindow(const DemoOptions& options)
+{
+    Glfw glfw;
+    Result<GLFWwindow*> opened = openWindow(glfw, options);
+    if (!opened)
+        return opened.error();
+    GLFWwindow* window = *opened;
+
+    std::uint32_t extensionCount = 0;
+    const char** extensions = glfwGetRequiredInstanceExtensions(&extensionCount);
+    Result<Instance> instance = createInstance({.applicationName = "penumbra-demo",
+                                                .extensions = {extensions, extensions + extensionCount},
+                                                .validation = options.validate});
+    if (!instance)
+        return instance.error();
+    Surface surface{instance->handle};
+    if (glfwCreateWindowSurface(instance->handle, window, nullptr, &surface.handle) != VK_SUCCESS)
+        return Error{"Vulkan cannot draw to this display; add --headless to render to files"};
+    Result<Device> device = createDevice(*instance, {.choice = options.device, .surface = surface.handle});
+    if (!device)
+        return device.error();
+    Result<Show> show = makeShow(*device, options, framebufferExtent(window));
+    if (!show)
+        return show.error();
+    Result<Swapchain> swapchain = Swapchain::create(*device, surface.handle);
+    if (!swapchain)
+        return swapchain.error();
+
+    Controls controls{.camera = show->scene->camera, .kernel = options.kernel};
+    glfwSetWindowUserPointer(window, &controls);
+    glfwSetCursorPosCallback(window, onCursor);
+    glfwSetScrollCallback(window, onScroll);
+    glfwSetKeyCallback(window, onKey);
+    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: kernel, Esc: quit\n");
+
+    TitleClock title;
+    auto last = std::chrono::steady_clock::now();
+    for (std::uint32_t frames = 0; !glfwWindowShouldClose(window) && (options.frames == 0 || frames < options.frames); ++frames) {
+        glfwPollEvents();
+        const VkExtent2D extent = framebufferExtent(window);
+        if (extent.width == 0 || extent.height == 0) { // minimised
+            glfwWaitEventsTimeout(0.1);
+            continue;
+        }
+        if (controls.restart) {
+            controls.restart = false;
+            *show = Show{}; // its frames end before the next begin
+            Result<Show> again = makeShow(*device, options, extent);
+            if (!again)
+                return again.error();
+            *show = std::move(*again);
+        }
+        Renderer& renderer = *show->renderer;
+        if (extent.width != renderer.extent().width || extent.height != renderer.extent().height)
+            if (Result<void> sized = renderer.resize(extent); !sized)
+                return sized;
+
+        const auto now = std::chrono::steady_clock::now();
+        const float seconds = std::chrono::duration<float>(now - last).count();
+        last = now;
+        if (!controls.paused)
+            for (const ChangedInstance& changed : show->simulation->advance(seconds))
+                renderer.scene().setInstance(changed.index, moved(renderer.scene().data(), changed));
+
+        const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
+        Result<GpuFrame> frame = renderer.beginFrame(viewOf(controls.camera, aspect), controls.kernel);
+        if (!frame)
+            return frame.error();
+        Result<bool> visible = swapchain->acquire(frame->slot, extent);
+        if (!visible)
+            return visible.error();
+        if (*visible)
+            copyToWindow(frame->cmd, renderer.display(), *swapchain);
+        if (Result<void> ended = renderer.endFrame(swapchain->waits(), swapchain->signals()); !ended)
+            return ended;
+        if (Result<void> shown = swapchain->present(); !shown)
+            return shown;
+        title.frame(window, show->scene->name, controls.kernel);
+    }
+    if (Result<void> idle = show->renderer->ring().waitIdle(); !idle)
+        return idle;
+    if (instance->validationCount() > 0)
+        return Error{fmt::format("{} validation messages, see above", instance->validationCount())};
+    return {};
+}
+
+} // namespace penumbra

@@ -1,0 +1,106 @@
+#include "runtime/ecs/archetype.h"
+#include "tests/runtime/ecs/components.h"
+
+#include <gtest/gtest.h>
+
+namespace penumbra::ecs {
+
+namespace {
+
+Archetype makeArchetype()
+{
+    return Archetype(0, componentSet<Position, Velocity, Health, Wide>().mask);
+}
+
+} // namespace
+
+// Every block size holds its columns apart and aligned: no write reaches another value.
+TEST(Archetype, KeepsValuesThroughAllBlockSizes)
+{
+    Archetype archetype = makeArchetype();
+    constexpr uint32_t kRows = 5000;
+    for (uint32_t i = 0; i < kRows; ++i) {
+        const Entity entity{i, 1};
+        ASSERT_EQ(archetype.append({&entity, 1}, {1, 0}), i);
+        const auto f = static_cast<float>(i);
+        const Position position{f, f + 0.25f, f + 0.5f};
+        const Velocity velocity{-f, -f - 0.25f, -f - 0.5f};
+        const Wide wide{{f, f, f, f, f, f, f, f}};
+        archetype.write(componentId<Position>(), i, &position);
+        archetype.write(componentId<Velocity>(), i, &velocity);
+        archetype.write(componentId<Health>(), i, &i);
+        archetype.write(componentId<Wide>(), i, &wide);
+    }
+    for (uint32_t i = 0; i < kRows; ++i) {
+        const auto f = static_cast<float>(i);
+        Position position;
+        Velocity velocity;
+        uint32_t health = 0;
+        Wide wide;
+        archetype.read(componentId<Position>(), i, &position);
+        archetype.read(componentId<Velocity>(), i, &velocity);
+        archetype.read(componentId<Health>(), i, &health);
+        archetype.read(componentId<Wide>(), i, &wide);
+        ASSERT_EQ(position, (Position{f, f + 0.25f, f + 0.5f}));
+        ASSERT_EQ(velocity, (Velocity{-f, -f - 0.25f, -f - 0.5f}));
+        ASSERT_EQ(health, i);
+        ASSERT_EQ(wide.values[7], f);
+        ASSERT_EQ(archetype.entities()[i].index, i);
+        const int32_t column = archetype.columnOf(componentId<Wide>());
+        ASSERT_EQ(reinterpret_cast<uintptr_t>(archetype.at(column, i)) % alignof(Wide), 0u);
+    }
+}
+
+TEST(Archetype, BlocksGrowFromOneToAHundredAndTwentyEightKib)
+{
+    Archetype archetype(0, componentSet<Position, Velocity>().mask); // 24 bytes a row
+    const Entity entity{0, 1};
+    std::vector<size_t> sizes;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        archetype.append({&entity, 1}, {1, 0});
+        if (sizes.empty() || archetype.blockBytes() != sizes.back())
+            sizes.push_back(archetype.blockBytes());
+    }
+    ASSERT_GE(sizes.size(), 5u);
+    EXPECT_LE(sizes[0], 1024u);
+    EXPECT_LE(sizes[1], 4 * 1024u);
+    EXPECT_LE(sizes[2], 18 * 1024u); // with the gaps between columns
+    EXPECT_LE(sizes[3], 130 * 1024u);
+    EXPECT_GT(sizes[3], 64 * 1024u);
+    EXPECT_EQ(sizes[4], 2 * sizes[3]);
+    EXPECT_LE(archetype.segmentRows() * 24, kSegmentBytes);
+    EXPECT_GT(archetype.segmentRows() * 48, kSegmentBytes); // the largest power of two that fits
+
+    while (archetype.count() > 10)
+        archetype.removeRow(0, {1, 0});
+    archetype.trim();
+    EXPECT_EQ(archetype.blockBytes(), sizes[3]);
+}
+
+TEST(Archetype, RemoveFillsTheGapWithTheLastRow)
+{
+    Archetype archetype(0, componentSet<Health>().mask);
+    for (uint32_t i = 0; i < 4; ++i) {
+        const Entity entity{i, 1};
+        archetype.append({&entity, 1}, {1, 0});
+        archetype.write(componentId<Health>(), i, &i);
+    }
+    EXPECT_EQ(archetype.removeRow(1, {1, 0}), (Entity{3, 1}));
+    EXPECT_TRUE(archetype.removeRow(2, {1, 0}).isNull()); // the last row itself
+    ASSERT_EQ(archetype.count(), 2u);
+    uint32_t health = 0;
+    archetype.read(componentId<Health>(), 1, &health);
+    EXPECT_EQ(health, 3u);
+}
+
+TEST(Archetype, TagsTakeNoSpace)
+{
+    Archetype archetype(0, componentSet<Frozen>().mask);
+    const std::vector<Entity> entities(100000, Entity{7, 1});
+    archetype.append(entities, {1, 0});
+    EXPECT_EQ(archetype.columns().size(), 0u);
+    EXPECT_EQ(archetype.valueBytes(), 0u);
+    EXPECT_LT(archetype.blockBytes(), 100u);
+}
+
+} // namespace penumbra::ecs

@@ -1,0 +1,154 @@
+// What Changed<> reports: nothing that was read only, everything that was written, and for
+// components that opt in, no row beside those.
+#include "runtime/ecs/query.h"
+#include "tests/runtime/ecs/components.h"
+
+#include <gtest/gtest.h>
+
+namespace penumbra::ecs {
+
+namespace {
+
+constexpr uint32_t kCount = 20000;
+
+struct Fixture : testing::Test {
+    Fixture() : entities(kCount)
+    {
+        world.createMany(entities, Position{}, Velocity{}, Health{});
+        look();
+    }
+
+    // From now on, only later changes are reported.
+    void look()
+    {
+        seen = world.version();
+        world.advance();
+    }
+
+    template <class T>
+    std::vector<Entity> changed()
+    {
+        std::vector<Entity> found;
+        world.query<const T, Changed<T>>().since(seen).each(
+            [&](Entity entity, const T&) { found.push_back(entity); });
+        return found;
+    }
+
+    World world;
+    std::vector<Entity> entities;
+    uint64_t seen = 0;
+};
+
+} // namespace
+
+using Change = Fixture;
+
+TEST_F(Change, ReadingMarksNothing)
+{
+    float sum = 0;
+    world.query<const Position, const Health, Maybe<const Velocity>>().each(
+        [&](const Position& p, const Health&, const Velocity*) { sum += p.x; });
+    world.query<const Position>().eachSegment([](Segment, const Position*) {});
+    static_cast<void>(world.get<const Position>(entities[0]));
+    static_cast<void>(world.tryGet<const Health>(entities[0]));
+    static_cast<void>(world.value<Velocity>(entities[0]));
+    static_cast<void>(std::as_const(world).get<Health>(entities[0]));
+    EXPECT_TRUE(changed<Position>().empty());
+    EXPECT_TRUE(changed<Velocity>().empty());
+    EXPECT_TRUE(changed<Health>().empty());
+}
+
+TEST_F(Change, EachMarksWhatItMayWrite)
+{
+    world.query<Position, const Health>().each([](Position&, const Health&) {});
+    EXPECT_EQ(changed<Position>().size(), kCount);
+    EXPECT_TRUE(changed<Health>().empty());
+    look();
+    world.query<Maybe<Health>>().parallelEach([](Health*) {});
+    EXPECT_EQ(changed<Health>().size(), kCount);
+    look();
+    world.query<Velocity>().eachSegment([](Segment, Lanes<Velocity>) {});
+    EXPECT_EQ(changed<Velocity>().size(), kCount);
+    look();
+    EXPECT_TRUE(changed<Velocity>().empty());
+}
+
+TEST_F(Change, OneWriteReportsItsSegmentOrItsRow)
+{
+    const Entity written = entities[kCount / 2];
+    world.get<Position>(written).x = 1;
+    world.get<Health>(written).points = 1;
+    const std::vector<Entity> segment = changed<Position>();
+    EXPECT_NE(std::find(segment.begin(), segment.end(), written), segment.end());
+    EXPECT_LT(segment.size(), 1000u);
+    EXPECT_EQ(changed<Health>(), std::vector{written});
+    look();
+    world.set(written, Velocity{1, 2, 3});
+    EXPECT_FALSE(changed<Velocity>().empty());
+    EXPECT_TRUE(changed<Health>().empty());
+}
+
+TEST_F(Change, RowsAddUpAndFallAway)
+{
+    for (uint32_t frame = 0; frame < 10; ++frame) {
+        std::vector<Entity> expected;
+        for (uint32_t i = frame; i < kCount; i += 97) {
+            world.get<Health>(entities[i]).points = frame;
+            expected.push_back(entities[i]);
+        }
+        ASSERT_EQ(changed<Health>(), expected) << frame;
+        look();
+    }
+}
+
+// A reader that looks every few frames still gets everything; perhaps more, never less.
+TEST_F(Change, LateReadersMissNothing)
+{
+    const uint64_t long_ago = seen;
+    std::vector<Entity> written;
+    for (uint32_t frame = 0; frame < 5; ++frame) {
+        written.push_back(entities[1000 + frame * 3]);
+        world.get<Health>(written.back()).points = 1;
+        look();
+    }
+    seen = long_ago;
+    const std::vector<Entity> found = changed<Health>();
+    for (const Entity entity : written)
+        EXPECT_NE(std::find(found.begin(), found.end(), entity), found.end());
+}
+
+TEST_F(Change, FilteredWritesMarkOnlyTheRowsVisited)
+{
+    world.get<Health>(entities[5]).points = 1;
+    const uint64_t before = seen;
+    look();
+    world.query<Health, Changed<Health>>().since(before).each([](Health& h) { h.points += 1; });
+    EXPECT_EQ(world.get<const Health>(entities[5]).points, 2u);
+    EXPECT_EQ(changed<Health>(), std::vector{entities[5]});
+}
+
+TEST_F(Change, AnyOfSeveralPasses)
+{
+    world.get<Health>(entities[1]).points = 1;
+    world.get<Health>(entities[kCount - 1]).points = 1;
+    uint32_t rows = 0;
+    world.query<const Health, Changed<Health>, Changed<Velocity>>().since(seen).each(
+        [&](const Health&) { ++rows; });
+    EXPECT_EQ(rows, 2u);
+}
+
+// A row that is new or has moved counts as changed: its reader may keep things by row.
+TEST_F(Change, NewAndMovedRowsCount)
+{
+    const Entity created = world.create(Health{1});
+    EXPECT_EQ(changed<Health>(), std::vector{created});
+    look();
+    world.add(entities[7], Frozen{});
+    const std::vector<Entity> found = changed<Health>();
+    EXPECT_EQ(found, (std::vector{entities.back(), entities[7]})); // the gap's new row, the moved
+    look();
+    world.destroy(entities[8]);
+    EXPECT_EQ(changed<Health>(), std::vector{entities[kCount - 2]});
+}
+
+} // namespace penumbra::ecs
