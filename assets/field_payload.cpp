@@ -6,7 +6,7 @@ namespace penumbra {
 
 namespace {
 
-constexpr int kZstdLevel = 9; // the smallest level past which sizes shrink by less than 1 %
+constexpr int kZstdLevel = 9; // higher ones save 1 to 4 % and take seconds
 
 // Calls visit(first byte of the shell's texels, side) for all shells, channels and frames in order.
 template <class Visit>

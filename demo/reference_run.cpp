@@ -106,7 +106,8 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     mat4 flipY(1);
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
     const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, extent.width, extent.height};
-    const ReferencePicture picture = renderReference(*traced, sky, camera, sampling);
+    // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
+    const ReferencePicture picture = renderReference(*traced, sky, camera, {.samples = std::max(options.samples / 4, 64u)});
     const Image8 shaded = displayImage(picture.radiance.shadowed, extent, scene.exposure);
     Image8 reference = *fields;
     for (std::size_t i = 0; i < picture.instance.size(); ++i)

@@ -7,6 +7,7 @@
 #include "runtime/file.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace penumbra {
 
@@ -72,6 +73,33 @@ Result<void> checkExtensions(const json& document)
     if (!unknown.empty())
         return Error{"requires extensions that assetc does not read: " + unknown +
                      "; export without them"};
+    return {};
+}
+
+// Indices and sizes must be whole numbers that fit an int: tinygltf takes others for absent or cuts
+// them off. Recursion ends at kMaxJsonDepth.
+Result<void> checkNumbers(const json& value, const std::string& place)
+{
+    static constexpr std::array kKeys = {
+        "buffer",  "bufferView", "byteLength", "byteOffset", "byteStride", "componentType", "count",
+        "indices", "material",   "mesh",       "mode",       "scene",      "skin"};
+    if (!value.is_structured())
+        return {};
+    for (const auto& [key, member] : value.items()) {
+        if (value.is_object() && (key == "extensions" || key == "extras"))
+            continue; // not ours
+        const std::string memberPlace = value.is_array() ? fmt::format("{}[{}]", place, key)
+                                        : place.empty()  ? key
+                                                         : fmt::format("{}.{}", place, key);
+        const bool isWhole = member.is_number_unsigned() &&
+                             member.get<std::uint64_t>() <= std::numeric_limits<int>::max();
+        const bool isSparseIndices = key == "indices" && member.is_object();
+        if (value.is_object() && std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end() &&
+            !isWhole && !isSparseIndices)
+            return Error{memberPlace + " is not a whole number from 0 to 2147483647"};
+        if (const auto checked = checkNumbers(member, memberPlace); !checked)
+            return checked;
+    }
     return {};
 }
 
@@ -153,6 +181,8 @@ Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
     if (const auto buffers = checkBuffers(*document, source.folder); !buffers)
         return buffers.error();
     dropUnread(*document, warnings);
+    if (const auto numbers = checkNumbers(*document, ""); !numbers)
+        return numbers.error();
     const std::string json = document->dump(-1, ' ', false, json::error_handler_t::replace);
 
     tinygltf::TinyGLTF parser;

@@ -58,8 +58,9 @@ private:
 
     Result<void> openDraco(const tinygltf::Value& extension)
     {
-        const int view =
-            extension.Has("bufferView") ? extension.Get("bufferView").GetNumberAsInt() : -1;
+        const int view = extension.Has("bufferView") && extension.Get("bufferView").IsInt()
+                             ? extension.Get("bufferView").GetNumberAsInt()
+                             : -1;
         if (view < 0 || static_cast<std::size_t>(view) >= m_model->bufferViews.size() ||
             !extension.Has("attributes") || !extension.Get("attributes").IsObject())
             return Error{fmt::format(

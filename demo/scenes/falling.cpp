@@ -1,7 +1,5 @@
 #include "demo/scenes/falling.h"
 
-#include "systems/physics/convex_decomposition.h"
-
 #include <glm/gtc/constants.hpp>
 #include <algorithm>
 
@@ -80,15 +78,9 @@ Result<LoadedKind> loadKind(const Kind& kind, const SceneOptions& options, Asset
     std::vector<vec3> points;
     for (const vec3& p : mesh.positions)
         points.push_back(p * scale);
-    Result<CollisionShape> shape = Error{};
-    if (kind.hull == Hull::Pieces) {
-        Result<std::vector<std::vector<vec3>>> pieces = decompose(points, mesh.indices, {.maxPieces = 14, .resolution = 32});
-        if (!pieces)
-            return fail(pieces.error(), kind.asset);
-        shape = compoundShape(*pieces);
-    } else {
-        shape = hullShape(points);
-    }
+    Result<CollisionShape> shape = kind.hull == Hull::Pieces
+                                       ? meshShape(points, mesh.indices, {.maxPieces = 14, .resolution = 32})
+                                       : hullShape(points);
     if (!shape)
         return fail(shape.error(), kind.asset);
     return LoadedKind{*asset, scale, std::move(*shape)};

@@ -19,29 +19,39 @@ uint32_t rowShift(uint32_t bytes, uint32_t rowBytes)
     return std::max<uint32_t>(std::bit_width(bytes / std::max(rowBytes, 4u)), 3) - 1;
 }
 
-template <size_t kBytes>
-void copyStrided(std::byte* to, size_t toStride, const std::byte* from, size_t fromStride, size_t n)
+// A copy of known size is one or two moves; these sizes are nearly all components and lanes.
+inline void copyValue(std::byte* to, const std::byte* from, size_t bytes)
 {
-    for (; n > 0; --n, to += toStride, from += fromStride)
-        std::memcpy(to, from, kBytes);
+    if (bytes == 4)
+        std::memcpy(to, from, 4);
+    else if (bytes == 12)
+        std::memcpy(to, from, 12);
+    else if (bytes == 16)
+        std::memcpy(to, from, 16);
+    else
+        std::memcpy(to, from, bytes);
 }
 
-// A copy of known size is one or two moves; these sizes are nearly all components and lanes.
-void copyValues(std::byte* to, size_t toStride, const std::byte* from, size_t fromStride, size_t n,
-                size_t bytes)
+template <size_t kBytes>
+void copyStrided(std::byte* to, const std::byte* from, size_t fromStride, size_t n, size_t bytes)
+{
+    const size_t size = kBytes > 0 ? kBytes : bytes;
+    for (; n > 0; --n, to += size, from += fromStride)
+        std::memcpy(to, from, size);
+}
+
+// n values of `bytes`, side by side, from places fromStride apart.
+void copyValues(std::byte* to, const std::byte* from, size_t fromStride, size_t n, size_t bytes)
 {
     switch (bytes) {
     case 4:
-        return copyStrided<4>(to, toStride, from, fromStride, n);
-    case 8:
-        return copyStrided<8>(to, toStride, from, fromStride, n);
+        return copyStrided<4>(to, from, fromStride, n, bytes);
     case 12:
-        return copyStrided<12>(to, toStride, from, fromStride, n);
+        return copyStrided<12>(to, from, fromStride, n, bytes);
     case 16:
-        return copyStrided<16>(to, toStride, from, fromStride, n);
+        return copyStrided<16>(to, from, fromStride, n, bytes);
     default:
-        for (; n > 0; --n, to += toStride, from += fromStride)
-            std::memcpy(to, from, bytes);
+        return copyStrided<0>(to, from, fromStride, n, bytes);
     }
 }
 
@@ -164,7 +174,7 @@ Entity Archetype::removeRow(uint32_t row, Stamp stamp)
         moved = m_entities[last];
         m_entities[row] = moved;
         for (uint32_t column = 0; column < m_columns.size(); ++column)
-            copyValues(at(column, row), 0, at(column, last), 0, 1, m_columns[column].bytes);
+            copyValue(at(column, row), at(column, last), m_columns[column].bytes);
         markStructural(row, stamp);
     }
     m_entities.pop_back();
@@ -176,7 +186,7 @@ void Archetype::copyRow(uint32_t row, const Archetype& source, uint32_t sourceRo
     for (uint32_t column = 0; column < m_columns.size(); ++column) {
         const Column& c = m_columns[column];
         if (const int32_t from = source.columnOf(c.component); from >= 0)
-            copyValues(at(column, row), 0, source.at(from + c.lane, sourceRow), 0, 1, c.bytes);
+            copyValue(at(column, row), source.at(from + c.lane, sourceRow), c.bytes);
     }
 }
 
@@ -189,8 +199,7 @@ void Archetype::copyRows(uint32_t row, const Archetype& source,
         if (from < 0)
             continue;
         for (uint32_t i = 0; i < sourceRows.size(); ++i)
-            copyValues(at(column, row + i), 0, source.at(from + c.lane, sourceRows[i]), 0, 1,
-                       c.bytes);
+            copyValue(at(column, row + i), source.at(from + c.lane, sourceRows[i]), c.bytes);
     }
 }
 
@@ -211,7 +220,7 @@ void Archetype::write(ComponentId id, uint32_t row, const void* value)
          column >= 0 && column < static_cast<int32_t>(m_columns.size()) &&
          m_columns[column].component == id;
          ++column) {
-        copyValues(at(column, row), 0, source, 0, 1, m_columns[column].bytes);
+        copyValue(at(column, row), source, m_columns[column].bytes);
         source += m_columns[column].bytes;
     }
 }
@@ -226,8 +235,7 @@ void Archetype::fill(ComponentId id, uint32_t row, uint32_t count, const void* v
         for (uint32_t lane = 0; lane < info.laneCount; ++lane) {
             const uint32_t column = m_columnOf[id] + lane;
             const uint32_t bytes = m_columns[column].bytes;
-            copyValues(at(column, row), bytes, source + size_t{lane} * bytes, stride, length,
-                       bytes);
+            copyValues(at(column, row), source + size_t{lane} * bytes, stride, length, bytes);
         }
         source += length * stride;
         row += length;

@@ -17,7 +17,7 @@ inline MeshAsset sampleMesh(std::uint32_t rings = 8)
     const std::uint32_t sectors = 2 * rings;
     const auto add = [&](float theta, float phi) {
         const vec3 direction{sin(theta) * cos(phi), cos(theta), sin(theta) * sin(phi)};
-        mesh.positions.push_back((1.0f + 0.1f * sin(5 * theta) * cos(3 * phi)) * direction);
+        mesh.positions.push_back((1.0f + 0.1f * pow(sin(theta), 3.0f) * cos(3 * phi)) * direction);
         mesh.normals.push_back(direction);
     };
     add(0, 0);

@@ -247,7 +247,7 @@ void Driver::deferred()
     std::vector<Entity> firstTouch;
     std::set<Entity, decltype(&before)> cleared(&before);
     std::map<Entity, std::optional<std::optional<Entity>>, decltype(&before)> newParents(&before);
-    static uint32_t unique = 1000000;
+    static uint32_t unique = 1000000; // steps leave room for what change() adds to points
 
     for (uint32_t b = 0; b < 3; ++b) {
         CommandBuffer& commands = buffers[b];
@@ -258,7 +258,7 @@ void Driver::deferred()
             }
             const uint32_t kind = below(9);
             if (kind == 0 || pool.empty()) {
-                New& entity = created.emplace_back(New{b, {}, ++unique, {}, {}});
+                New& entity = created.emplace_back(New{b, {}, unique += 100000, {}, {}});
                 entity.deferred = commands.create(Velocity{}, Health{entity.health});
                 if (chance(50)) {
                     entity.position = position();

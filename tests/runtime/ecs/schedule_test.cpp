@@ -61,6 +61,11 @@ std::string simulate(int threads)
                     p.z *= 1.0001f;
                 });
         });
+        // Reads what integrate writes and writes what it reads: out of order, other bits.
+        schedule.add<const Position, Velocity>("drag", "simulate", [](SystemContext& context) {
+            context.query<const Position, Velocity>().parallelEach(
+                [](const Position& p, Velocity& v) { v.y = v.y * 0.99f - p.x * 0.001f; });
+        });
         schedule.add<Health>("age", "simulate", [](SystemContext& context) {
             const auto frame = static_cast<uint32_t>(context.version());
             context.query<const Health>().each([&](Entity entity, const Health&) {

@@ -100,7 +100,8 @@ TEST(World, ReusesIndicesWithNewGenerations)
     EXPECT_FALSE(world.alive(Entity{1000, 1}));
     EXPECT_EXIT(world.destroy(first), testing::ExitedWithCode(3),
                 "entity 0#1 is not alive; index 0 is at generation 2");
-    EXPECT_EXIT(world.has<Health>(Entity{}), testing::ExitedWithCode(3), "null entity");
+    EXPECT_EXIT(static_cast<void>(world.has<Health>(Entity{})), testing::ExitedWithCode(3),
+                "null entity");
     EXPECT_EXIT(static_cast<void>(world.get<Position>(second)), testing::ExitedWithCode(3),
                 "has no test.Position; it has: test.Health");
 }

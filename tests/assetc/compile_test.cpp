@@ -1,0 +1,123 @@
+#include "assetc/compile.h"
+#include "tests/assetc/gltf_fixture.h"
+#include "tests/assetc/temporary_folder.h"
+#include "tests/assets/sample_assets.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+namespace penumbra {
+
+namespace {
+
+// The bumpy sphere as OBJ without normals, and options that bake in a blink.
+std::filesystem::path writeSphere(const TemporaryFolder& folder)
+{
+    const MeshAsset mesh = sampleMesh(12);
+    std::string text;
+    for (const vec3 p : mesh.positions)
+        text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+    for (std::size_t t = 0; t < mesh.indices.size(); t += 3)
+        text += fmt::format("f {} {} {}\n", mesh.indices[t] + 1, mesh.indices[t + 1] + 1,
+                            mesh.indices[t + 2] + 1);
+    return folder.write("sphere.obj", text);
+}
+
+CompileOptions quickOptions()
+{
+    CompileOptions options;
+    options.bake.shells = 6;
+    options.bake.side = 9;
+    options.bake.directions = 256;
+    options.bake.rasterSide = 256;
+    return options;
+}
+
+Result<CompiledAsset> compile(const std::filesystem::path& path, const CompileOptions& options)
+{
+    Progress progress("test");
+    return compileAsset(path, options, progress);
+}
+
+} // namespace
+
+TEST(CompileAsset, BytesDecodeToTheMeshThatWasBaked)
+{
+    const TemporaryFolder folder;
+    const auto asset = compile(writeSphere(folder), quickOptions());
+    ASSERT_TRUE(asset) << asset.error().message;
+    const auto decoded = decodeMeshAsset(asset->bytes);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    EXPECT_EQ(decoded->name, "sphere");
+    EXPECT_EQ(decoded->indices, asset->mesh.indices);
+    EXPECT_EQ(decoded->selfVisibility, asset->mesh.selfVisibility);
+    ASSERT_EQ(decoded->positions.size(), asset->mesh.positions.size());
+    for (std::size_t i = 0; i < decoded->positions.size(); ++i)
+        EXPECT_LT(length(decoded->positions[i] - asset->mesh.positions[i]), 1e-6f);
+    ASSERT_TRUE(decoded->field);
+    EXPECT_EQ(decoded->field->texels, asset->mesh.field->texels);
+}
+
+TEST(CompileAsset, SameBytesForAnyThreadCount)
+{
+    const TemporaryFolder folder;
+    const auto path = writeSphere(folder);
+    std::vector<std::vector<std::byte>> results;
+    for (const std::size_t threads : {1, 2, 5}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        results.push_back(compile(path, quickOptions())->bytes);
+    }
+    EXPECT_EQ(results[0], results[1]);
+    EXPECT_EQ(results[0], results[2]);
+}
+
+// Rays and rasters are independent ways to one number. 8 bits and 256 pixels leave less than 0.01.
+TEST(CompileAsset, VerifyAgreesWithRays)
+{
+    const TemporaryFolder folder;
+    CompileOptions options = quickOptions();
+    options.verify = true;
+    const auto asset = compile(writeSphere(folder), options);
+    ASSERT_TRUE(asset) << asset.error().message;
+    ASSERT_TRUE(asset->report.verify);
+    EXPECT_EQ(asset->report.verify->directions, 256u);
+    EXPECT_GT(asset->report.verify->rms, 0);
+    EXPECT_LT(asset->report.verify->rms, 0.01f);
+}
+
+TEST(CompileAsset, VerifyNoticesASpoiledField)
+{
+    const TemporaryFolder folder;
+    auto asset = compile(writeSphere(folder), quickOptions());
+    ASSERT_TRUE(asset);
+    const float good = verifyBake(asset->mesh)->rms;
+    for (std::size_t i = 0; i < asset->mesh.field->texels.size(); i += 16)
+        asset->mesh.field->texels[i] = static_cast<std::uint8_t>(asset->mesh.field->texels[i] / 2);
+    EXPECT_GT(verifyBake(asset->mesh)->rms, 5 * good);
+    asset->mesh.field.reset();
+    EXPECT_FALSE(verifyBake(asset->mesh));
+}
+
+TEST(CompileAsset, NoField)
+{
+    const TemporaryFolder folder;
+    CompileOptions options = quickOptions();
+    options.bake.field = false;
+    const auto asset = compile(writeSphere(folder), options);
+    ASSERT_TRUE(asset);
+    EXPECT_FALSE(asset->mesh.field);
+    EXPECT_TRUE(decodeMeshAsset(asset->bytes));
+}
+
+TEST(CompileAsset, ErrorsNameTheFile)
+{
+    const TemporaryFolder folder;
+    for (const char* text : {"v 0 0 0\n", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "f 1 2 3\n"}) {
+        const auto asset = compile(folder.write("bad.obj", text), quickOptions());
+        ASSERT_FALSE(asset) << text;
+        EXPECT_NE(asset.error().message.find("bad.obj"), std::string::npos)
+            << asset.error().message;
+    }
+}
+
+} // namespace penumbra

@@ -1,0 +1,53 @@
+#include "assetc/import/import.h"
+#include "tests/assetc/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+namespace penumbra {
+
+TEST(ObjImport, TrianglesNormalsAndMaterial)
+{
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "newmtl small\nKd 1 0 0\nnewmtl large\nKd 0.25 0.5 0.75\n");
+    const auto path =
+        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 0.1 0\nvn 0 0 1\n"
+                              "usemtl small\nf 1//1 3//1 4//1\nusemtl large\nf 1//1 2//1 3//1\n");
+    const auto result = importMesh(path);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_EQ(result->mesh.positions.size(), 4u); // corners 1 and 3 are shared
+    EXPECT_EQ(result->mesh.indices.size(), 6u);
+    EXPECT_EQ(result->mesh.normals[0], (vec3{0, 0, 1}));
+    EXPECT_EQ(result->mesh.material.albedo, (vec3{0.25f, 0.5f, 0.75f}));
+    EXPECT_TRUE(result->warnings.empty());
+}
+
+TEST(ObjImport, PolygonsAreTriangulatedAndNegativeIndicesCountBack)
+{
+    const TemporaryFolder folder;
+    const auto path =
+        folder.write("a.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf -5 -4 -3 -2 -1\n");
+    const auto result = importMesh(path); // a concave pentagon
+    ASSERT_TRUE(result) << result.error().message;
+    const MeshAsset& mesh = result->mesh;
+    ASSERT_EQ(mesh.indices.size(), 9u);
+    float area = 0;
+    for (std::size_t t = 0; t < 9; t += 3) {
+        const vec3 a = mesh.positions[mesh.indices[t]];
+        const float z =
+            cross(mesh.positions[mesh.indices[t + 1]] - a, mesh.positions[mesh.indices[t + 2]] - a)
+                .z;
+        EXPECT_GT(z, 0); // no triangle folds over
+        area += 0.5f * z;
+    }
+    EXPECT_NEAR(area, 2.5f, 1e-6f);
+}
+
+TEST(ObjImport, MissingNormalsAreZero)
+{
+    const TemporaryFolder folder;
+    const auto result = importMesh(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"));
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->mesh.normals[1], vec3{0});
+}
+
+} // namespace penumbra

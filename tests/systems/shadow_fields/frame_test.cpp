@@ -1,0 +1,142 @@
+// The passes of a frame on the GPU against their CPU twins, which are compiled from the same headers.
+#include "systems/frame.h"
+
+#include "runtime/vk/transfer.h"
+#include "systems/techniques/shadow_fields/combine_cpu.h"
+#include "tests/support/gpu_fixture.h"
+#include "tests/systems/shadow_fields/test_scene.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace penumbra {
+namespace {
+
+struct Drawn {
+    std::vector<vec4> radiance;
+    std::vector<GpuInstance> instances;
+    std::vector<DenseRotation> dense;
+    std::vector<std::uint32_t> visible, lists;
+    CullResult cull;
+    std::vector<std::byte> picture;
+};
+
+class FrameTest : public GpuTest {
+protected:
+    // One scene for all tests: baking takes longer than drawing.
+    static const TestScene& scene()
+    {
+        static const TestScene kScene = makeTestScene();
+        return kScene;
+    }
+
+    Drawn draw(Kernel kernel, std::uint32_t frames = 1)
+    {
+        const FramePasses passes = take(createFramePasses(device()));
+        FrameTargets targets = take(createFrameTargets(device(), passes, {160, 120}));
+        GpuScene gpu = take(GpuScene::create(device(), scene().data, scene().environment, 2));
+        FrameRing ring(device());
+        for (std::uint32_t i = 0; i < frames; ++i) {
+            const GpuFrame frame = take(ring.beginFrame());
+            recordFrame(frame, passes, gpu, scene().constants, {kernel, true, 1}, targets);
+            take(ring.endFrame());
+        }
+        take(ring.waitIdle());
+        Drawn drawn;
+        drawn.radiance = take(readBackAs<vec4>(device(), gpu.buffers().radiance));
+        drawn.instances = take(readBackAs<GpuInstance>(device(), gpu.buffers().instances));
+        drawn.dense = take(readBackAs<DenseRotation>(device(), gpu.buffers().denseRotations));
+        drawn.cull = take(readBackAs<CullResult>(device(), gpu.buffers().cull)).front();
+        drawn.visible = take(readBackAs<std::uint32_t>(device(), gpu.buffers().visible));
+        drawn.visible.resize(drawn.cull.combineGroups[0]);
+        drawn.lists = take(readBackAs<std::uint32_t>(device(), gpu.buffers().lists));
+        drawn.picture = take(readBack(device(), targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
+        return drawn;
+    }
+
+    // Largest difference of the visible receivers' radiance, relative to `scale`.
+    void expectTwin(Kernel kernel, double tolerance, bool ofMaximum)
+    {
+        const Drawn drawn = draw(kernel);
+        const CpuInstances instances = updateInstances(scene().data);
+        std::vector<vec4> cpu(scene().data.radianceCount);
+        double sum = 0, largest = 0, difference = 0;
+        std::size_t count = 0;
+        for (const ClusterOccluders& cluster : cullAndSort(scene().data, instances, scene().constants)) {
+            combineCluster(kernel, scene().data, instances, scene().constants, cluster, cpu);
+            for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
+                const std::size_t i = scene().data.clusters[cluster.cluster].firstRadiance + v;
+                for (int c = 0; c < 3; ++c) {
+                    sum += cpu[i][c];
+                    largest = std::max(largest, static_cast<double>(cpu[i][c]));
+                    difference = std::max(difference, std::abs(static_cast<double>(cpu[i][c] - drawn.radiance[i][c])));
+                    ++count;
+                }
+            }
+        }
+        ASSERT_GT(count, 1000u);
+        const double mean = sum / static_cast<double>(count);
+        EXPECT_GT(mean, 0.1); // light arrives
+        EXPECT_LT(difference / (ofMaximum ? largest : mean), tolerance);
+        RecordProperty("difference", std::to_string(difference / (ofMaximum ? largest : mean)));
+    }
+};
+
+TEST_F(FrameTest, InstanceUpdateEqualsTwin)
+{
+    const Drawn drawn = draw(Kernel::Literal);
+    const CpuInstances twin = updateInstances(scene().data);
+    ASSERT_EQ(drawn.instances.size(), twin.instances.size());
+    for (std::size_t i = 0; i < twin.instances.size(); ++i) {
+        const auto* gpu = reinterpret_cast<const float*>(&drawn.instances[i]);
+        const auto* cpu = reinterpret_cast<const float*>(&twin.instances[i]);
+        for (std::size_t k = 0; k < sizeof(GpuInstance) / 4; ++k)
+            EXPECT_NEAR(gpu[k], cpu[k], 2e-5 * std::max(1.0f, std::abs(cpu[k]))) << i << ' ' << k;
+        for (std::size_t k = 0; k < 83; ++k)
+            EXPECT_NEAR(drawn.dense[i].m[k], twin.dense[i].m[k], 2e-5);
+    }
+}
+
+TEST_F(FrameTest, CullAndSortEqualTwin)
+{
+    const Drawn drawn = draw(Kernel::Exact);
+    const std::vector<ClusterOccluders> twin = cullAndSort(scene().data, updateInstances(scene().data), scene().constants);
+    EXPECT_LT(twin.size(), scene().data.clusters.size()); // something is culled …
+    ASSERT_GT(twin.size(), 10u);                          // … and not everything
+    ASSERT_EQ(drawn.visible.size(), twin.size());
+    std::map<std::uint32_t, std::size_t> slotOf;
+    for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
+        slotOf[drawn.visible[slot]] = slot;
+    std::uint32_t pairs = 0;
+    for (const ClusterOccluders& cluster : twin) {
+        ASSERT_TRUE(slotOf.contains(cluster.cluster));
+        const std::uint32_t* list = &drawn.lists[slotOf[cluster.cluster] * (1 + kMaxClusterOccluders)];
+        EXPECT_EQ(std::vector<std::uint32_t>(list + 1, list + 1 + list[0]), cluster.occluders);
+        pairs += list[0];
+    }
+    EXPECT_EQ(drawn.cull.pairs, pairs);
+    EXPECT_GT(pairs, twin.size()); // more than one occluder per cluster
+    EXPECT_EQ(drawn.cull.dropped, 0u);
+}
+
+TEST_F(FrameTest, LiteralEqualsTwin) { expectTwin(Kernel::Literal, 1e-4, false); }
+
+// A weight of 1/256 may round the other way where the two differ in the last bit of a fraction.
+TEST_F(FrameTest, ExactEqualsTwin) { expectTwin(Kernel::Exact, 3e-3, true); }
+
+TEST_F(FrameTest, FramesRepeatBitByBit)
+{
+    const Drawn once = draw(Kernel::Exact), again = draw(Kernel::Exact, 3);
+    EXPECT_EQ(once.picture, again.picture);
+    for (const std::uint32_t c : once.visible)
+        for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
+            const std::size_t i = scene().data.clusters[c].firstRadiance + v;
+            ASSERT_EQ(once.radiance[i], again.radiance[i]);
+        }
+    // The picture shows something: not one colour.
+    EXPECT_GT(std::set(once.picture.begin(), once.picture.end()).size(), 20u);
+}
+
+} // namespace
+} // namespace penumbra

@@ -1,0 +1,127 @@
+#include "tests/systems/shadow_fields/test_scene.h"
+
+#include "assetc/bake.h"
+#include "shaders/shared/environment.h"
+
+#include <glm/gtc/constants.hpp>
+
+namespace penumbra {
+
+namespace {
+
+MeshAsset finish(MeshAsset mesh, bool bake)
+{
+    mesh.clusters = buildClusters(mesh.positions, mesh.indices);
+    mesh.selfVisibility.assign(mesh.positions.size(), SelfVisibility{});
+    for (SelfVisibility& open : mesh.selfVisibility)
+        open.fill(128);
+    if (bake) {
+        Progress progress("test");
+        BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices,
+                                    {.shells = 12, .side = 17, .directions = 256, .rasterSide = 128}, progress);
+        mesh.selfVisibility = std::move(baked.selfVisibility);
+        mesh.field = std::move(baked.field);
+    }
+    return mesh;
+}
+
+vec4 quaternion(float angle, vec3 axis)
+{
+    const quat q = glm::angleAxis(angle, normalize(axis));
+    return vec4(q.x, q.y, q.z, q.w);
+}
+
+} // namespace
+
+MeshAsset makeSphereAsset(float radius, int rows, bool bake)
+{
+    MeshAsset mesh;
+    const int turns = 2 * rows;
+    for (int i = 0; i <= rows; ++i) {
+        for (int j = 0; j <= turns; ++j) {
+            const float a = glm::pi<float>() * static_cast<float>(i) / static_cast<float>(rows);
+            const float b = 2 * glm::pi<float>() * static_cast<float>(j) / static_cast<float>(turns);
+            mesh.normals.push_back(vec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)));
+            mesh.positions.push_back(radius * mesh.normals.back());
+        }
+    }
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < turns; ++j) {
+            const auto a = static_cast<std::uint32_t>(i * (turns + 1) + j), b = a + static_cast<std::uint32_t>(turns) + 1;
+            if (i > 0)
+                mesh.indices.insert(mesh.indices.end(), {a, a + 1, b + 1});
+            if (i < rows - 1)
+                mesh.indices.insert(mesh.indices.end(), {a, b + 1, b});
+        }
+    }
+    return finish(std::move(mesh), bake);
+}
+
+MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake)
+{
+    MeshAsset mesh;
+    for (int face = 0; face < 6; ++face) {
+        const int axis = face / 2;
+        vec3 normal(0), u(0), v(0);
+        normal[axis] = face % 2 == 0 ? 1.0f : -1.0f;
+        u[(axis + 1) % 3] = 1;
+        v = cross(normal, u);
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (int y = 0; y <= cells; ++y) {
+            for (int x = 0; x <= cells; ++x) {
+                const float s = 2 * static_cast<float>(x) / static_cast<float>(cells) - 1;
+                const float t = 2 * static_cast<float>(y) / static_cast<float>(cells) - 1;
+                mesh.positions.push_back(halfExtents * (normal + s * u + t * v));
+                mesh.normals.push_back(normal);
+            }
+        }
+        const auto stride = static_cast<std::uint32_t>(cells + 1);
+        for (std::uint32_t y = 0; y + 1 < stride; ++y) {
+            for (std::uint32_t x = 0; x + 1 < stride; ++x) {
+                const std::uint32_t a = first + y * stride + x;
+                mesh.indices.insert(mesh.indices.end(), {a, a + 1, a + stride + 1, a, a + stride + 1, a + stride});
+            }
+        }
+    }
+    return finish(std::move(mesh), bake);
+}
+
+TestScene makeTestScene()
+{
+    TestScene scene;
+    scene.assets.push_back(makeSphereAsset(0.5f, 16));
+    scene.assets.push_back(makeBoxAsset(vec3(0.3f, 0.4f, 0.5f), 6));
+    scene.assets.push_back(makeBoxAsset(vec3(3, 0.1f, 3), 20, false));
+
+    std::vector<SceneInstance> instances;
+    for (int i = 0; i < 9; ++i) {
+        const auto f = static_cast<float>(i);
+        SceneInstance instance;
+        instance.mesh = static_cast<std::uint32_t>(i % 2);
+        instance.position = vec3(1.5f * std::cos(2.1f * f), 0.5f + 0.12f * f, 1.4f * std::sin(2.1f * f));
+        instance.scale = 0.6f + 0.08f * f;
+        instance.rotation = quaternion(0.9f * f, vec3(1, f, 2));
+        instance.material = {vec3(0.8f, 0.5f + 0.04f * f, 0.3f), i % 3 == 0 ? 0.5f : 0.0f, 6};
+        instances.push_back(instance);
+    }
+    instances.push_back({.mesh = 2, .position = vec3(0, -0.1f, 0), .material = {vec3(0.7f), 0, 0}});
+
+    const std::uint32_t width = 32, height = 16;
+    std::vector<vec3> map;
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const vec3 d = equirectDirection(vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) / vec2(width, height));
+            map.push_back(vec3(0.3f) + std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f)))) * vec3(2.0f, 1.6f, 1.2f));
+        }
+    scene.environment = makeEnvironment(width, height, std::move(map));
+
+    std::vector<const MeshAsset*> meshes;
+    for (const MeshAsset& mesh : scene.assets)
+        meshes.push_back(&mesh);
+    scene.data = buildSceneData(meshes, std::move(instances));
+    scene.view = viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
+    scene.constants = frameConstants(scene.view, environmentLight(scene.environment, 1), 1);
+    return scene;
+}
+
+} // namespace penumbra
