@@ -1,11 +1,12 @@
 // Reading of untrusted JSON. parseJson bounds size and depth before the parser sees the text.
-// JsonReader walks the document and keeps the first problem, with its place, so that callers read
+// JsonReader walks the document and collects problems, each with its place, so that callers read
 // everything and check once:
-//   JsonProblem problem;
-//   JsonReader root(document, "json", problem);
+//   JsonProblems problems;
+//   const JsonReader root(document, "json", problems);
 //   const std::uint64_t count = root.member("accessors").element(3).count("count", kMax);
-//   if (problem) return *problem;
-// After a problem all reads return zeros, which are safe to size and index with.
+//   if (!problems.empty()) return problems.front();
+// A value that is not as asked reads as zero, which is safe to size and index with; what lies below
+// a missing value is not reported again.
 #pragma once
 
 #include "runtime/result.h"

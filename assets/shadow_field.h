@@ -3,13 +3,12 @@
 // section 3.3). The byte layout on disk is in docs/asset_format.md.
 //
 // Sampling. Shell s of n lies at radius innerRadius * (outerRadius / innerRadius)^(s / (n - 1)), in
-// bounding radii. Its grid has side^2 nodes over the octahedral map, nodes ON the edges: node (x,
-// y) has u = x/(side-1), v = y/(side-1). Quantisation. Coefficient i of band l at radius r (in
-// bounding radii) is
-//     c_i = unoccluded_i + bandScale[l] * g(r) * (q_i - 128),    g(r) = 1 / (0.25 + r^2),
-//     unoccluded = (sqrt(4 pi), 0, …)
-// for an occlusion field; a radiance field has unoccluded = 0. Both functions live in
-// shaders/shared/field.h.
+// bounding radii. Its grid has side^2 nodes over the octahedral map, nodes ON the edges:
+//     node (x, y) has u = x / (side - 1), v = y / (side - 1)
+// Quantisation. Coefficient i of band l at radius r (in bounding radii) is
+//     c_i = unoccluded_i + bandScale[l] * g(r) * (q_i - 128),    g(r) = 1 / (0.25 + r^2)
+// with unoccluded = (sqrt(4 pi), 0, …) for an occlusion field and 0 for a radiance field. Both
+// functions live in shaders/shared/field.h.
 #pragma once
 
 #include "runtime/result.h"

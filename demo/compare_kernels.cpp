@@ -54,10 +54,12 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
                     return set;
                 if (Result<void> drawn = renderer.drawFrame(view, kKernels[k]); !drawn)
                     return drawn;
-                const auto& zones = renderer.zoneMs();
-                times[k].add("combine", zones.at("combine"));
-                shared.add("raster", zones.at("raster"));
-                shared.add("cullSort", zones.at("cluster_cull") + zones.at("entity_sort"));
+                Result<std::map<std::string, double>> passes = renderer.timePasses(kKernels[k]);
+                if (!passes)
+                    return passes.error();
+                times[k].add("combine", passes->at("combine"));
+                shared.add("raster", passes->at("raster"));
+                shared.add("cullSort", passes->at("cull_sort"));
                 if (repeat == 0) {
                     Result<std::vector<vec4>> radiance = renderer.radiance();
                     Result<CullResult> cull = renderer.cullResult();

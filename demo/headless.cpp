@@ -105,8 +105,13 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
         return drawn;
     measured.cpu.add("draw", millisecondsSince(drawing)); // record, submit and wait: all of the GPU's time too
     measured.frameMs.push_back(millisecondsSince(start));
-    measured.gpu.add(renderer.zoneMs());
     ++measured.frames;
+    if (options.benchmark.empty() || options.cpuScalar)
+        return {};
+    Result<std::map<std::string, double>> passes = renderer.timePasses(options.kernel);
+    if (!passes)
+        return passes.error();
+    measured.gpu.add(*passes);
     return {};
 }
 

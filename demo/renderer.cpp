@@ -2,6 +2,7 @@
 
 #include "runtime/vk/transfer.h"
 
+#include <chrono>
 #include <cstring>
 
 namespace penumbra {
@@ -49,16 +50,34 @@ Result<void> Renderer::endFrame(std::span<const VkSemaphoreSubmitInfo> waits, st
 
 Result<void> Renderer::drawFrame(const View& view, Kernel kernel, bool combine)
 {
-    if (Result<GpuFrame> frame = beginFrame(view, kernel, combine); !frame)
+    Result<GpuFrame> frame = beginFrame(view, kernel, combine);
+    if (!frame)
         return frame.error();
+    m_slot = frame->slot;
     if (Result<void> ended = endFrame(); !ended)
         return ended;
-    if (Result<void> done = m_ring.waitIdle(); !done)
-        return done;
-    m_zoneMs.clear();
-    for (const ZoneTime& zone : m_ring.zoneTimes())
-        m_zoneMs[zone.name] += zone.milliseconds;
-    return {};
+    return m_ring.waitIdle();
+}
+
+Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
+{
+    using Clock = std::chrono::steady_clock;
+    std::map<std::string, double> milliseconds;
+    Result<void> failed;
+    const auto time = [&](const char* name, auto&& record) {
+        const auto start = Clock::now();
+        Result<void> done = submitAndWait(m_device, [&](VkCommandBuffer cmd) { record(GpuFrame{.cmd = cmd, .slot = m_slot}); });
+        milliseconds[name] = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        if (!done)
+            failed = done;
+    };
+    time("cull_sort", [&](const GpuFrame& gpu) { recordCullAndSort(gpu, m_passes, m_scene); });
+    time("combine", [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, m_scene, kernel); });
+    time("raster", [&](const GpuFrame& gpu) { recordRaster(gpu, m_passes, m_scene, m_targets); });
+    time("post", [&](const GpuFrame& gpu) { recordPost(gpu, m_passes, m_targets, m_exposure); });
+    if (!failed)
+        return failed.error();
+    return milliseconds;
 }
 
 Result<void> Renderer::resize(VkExtent2D extent)

@@ -27,9 +27,12 @@ public:
     Result<GpuFrame> beginFrame(const View& view, Kernel kernel, bool combine = true);
     Result<void> endFrame(std::span<const VkSemaphoreSubmitInfo> waits = {}, std::span<const VkSemaphoreSubmitInfo> signals = {});
 
-    // A whole frame, finished when this returns. Its zone times are in zoneMs().
+    // A whole frame, finished when this returns.
     Result<void> drawFrame(const View& view, Kernel kernel, bool combine = true);
-    [[nodiscard]] const std::map<std::string, double>& zoneMs() const { return m_zoneMs; }
+
+    // The passes of the frame last drawn once more, each in a submission of its own: milliseconds by name, as the CPU's
+    // clock sees them. Timestamps will not do on lavapipe, which runs compute at once and writes timestamps later.
+    Result<std::map<std::string, double>> timePasses(Kernel kernel);
 
     Result<void> resize(VkExtent2D extent);
     [[nodiscard]] VkExtent2D extent() const { return m_targets.display.extent; }
@@ -59,7 +62,7 @@ private:
     LightSh m_light{};
     float m_backgroundIntensity = 1, m_exposure = 1;
     Kernel m_kernel = Kernel::Exact;
-    std::map<std::string, double> m_zoneMs;
+    std::uint32_t m_slot = 0; // of the frame last drawn
 };
 
 } // namespace penumbra

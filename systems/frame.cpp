@@ -59,14 +59,6 @@ void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const 
     dispatchCovering(gpu.cmd, changed, 16);
 }
 
-void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets, float exposure)
-{
-    const GpuZone zone(gpu.cmd, "post");
-    bindAndPush(gpu.cmd, passes.post, targets.postSet, exposure);
-    const VkExtent2D extent = targets.display.extent;
-    vkCmdDispatch(gpu.cmd, groupCount(extent.width, 8), groupCount(extent.height, 8), 1);
-}
-
 } // namespace
 
 void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene, const FrameConstants& constants,
@@ -83,17 +75,11 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
         recordCombine(gpu, passes, scene, options.kernel);
     computeToGraphics(gpu.cmd);
 
-    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage, kColorTarget);
-    transitionImage(gpu.cmd, targets.depth.handle, targets.depth.aspect, kUndefinedImage, kDepthTarget);
     recordRaster(gpu, passes, scene, targets);
-    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kColorTarget, kShaderRead);
-
-    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kUndefinedImage, kStorageImage);
     recordPost(gpu, passes, targets, options.exposure);
-    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kStorageImage, kCopySource);
 }
 
-void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene)
+void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
 {
     const GpuSceneBuffers& b = scene.buffers();
     const CullResult nothing{{0, 1, 1}, {0, 1, 1}, 0, 0};
@@ -125,6 +111,8 @@ void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScen
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, const FrameTargets& targets)
 {
     const GpuZone zone(gpu.cmd, "raster");
+    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage, kColorTarget);
+    transitionImage(gpu.cmd, targets.depth.handle, targets.depth.aspect, kUndefinedImage, kDepthTarget);
     const GpuSceneBuffers& b = scene.buffers();
     beginRendering(gpu.cmd, targets);
     bind(gpu.cmd, passes.raster, scene.set(gpu.slot), nullptr, 0);
@@ -140,6 +128,17 @@ void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene
     bind(gpu.cmd, passes.background, scene.set(gpu.slot), nullptr, 0);
     vkCmdDraw(gpu.cmd, 3, 1, 0, 0);
     vkCmdEndRendering(gpu.cmd);
+    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kColorTarget, kShaderRead);
+}
+
+void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets, float exposure)
+{
+    const GpuZone zone(gpu.cmd, "post");
+    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kUndefinedImage, kStorageImage);
+    bindAndPush(gpu.cmd, passes.post, targets.postSet, exposure);
+    const VkExtent2D extent = targets.display.extent;
+    vkCmdDispatch(gpu.cmd, groupCount(extent.width, 8), groupCount(extent.height, 8), 1);
+    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kStorageImage, kCopySource);
 }
 
 Result<FramePasses> createFramePasses(const Device& device)

@@ -41,9 +41,10 @@ struct FrameOptions {
 void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene, const FrameConstants& constants,
                  const FrameOptions& options, const FrameTargets& targets);
 
-// The parts, for benchmarks that run one of them alone.
-void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene);
+// The parts. Each takes and leaves the targets as the next one wants them.
+void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, Kernel kernel);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, const FrameTargets& targets);
+void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets, float exposure);
 
 } // namespace penumbra
