@@ -9,9 +9,10 @@ namespace penumbra {
 namespace {
 
 constexpr float kConeWeight = 0.5f; // of meshlets: the middle between small and flat
-// Unit normals against positions in bounding radii, in the median split. Measured on bunny, boot
-// and suzi: cones stop improving above, spheres grow.
-constexpr float kNormalWeight = 0.35f;
+// Unit normals against positions in bounding radii, in the median split. On bunny, suzi, boot and
+// wingnut 0 leaves 45 % of the clusters without a cone, 0.2 leaves 16 % for 20 % more radius;
+// above, spheres grow faster than cones shrink.
+constexpr float kNormalWeight = 0.2f;
 
 using Key = std::array<float, 6>;
 

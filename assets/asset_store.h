@@ -21,7 +21,8 @@ struct AssetHandle {
 
 class AssetStore {
 public:
-    // The same path gives the same handle. Error: missing, not an asset, damaged; the message names the file.
+    // The same path gives the same handle. Error: missing, not an asset, damaged; the message names
+    // the file.
     Result<AssetHandle> loadMesh(const std::filesystem::path& path);
     // An asset made in memory.
     AssetHandle addMesh(MeshAsset mesh);

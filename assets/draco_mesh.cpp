@@ -125,7 +125,7 @@ Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEnco
 
     draco::ExpertEncoder encoder(target);
     encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);     // edgebreaker reorders vertices
-    encoder.options().SetGlobalBool("compress_connectivity", true); // 30 % of the payload
+    encoder.options().SetGlobalBool("compress_connectivity", true); // 25 to 29 % less
     encoder.SetAttributeQuantization(position, options.positionBits);
     encoder.SetAttributeQuantization(normal, options.normalBits);
     draco::EncoderBuffer buffer;

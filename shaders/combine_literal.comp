@@ -13,23 +13,6 @@
 layout(local_size_x = kClusterReceivers) in;
 layout(constant_id = 2) const float kSelfScale = 1.0;
 
-Sh4 rotateDense(Sh4 f, uint instance)
-{
-    Sh4 g;
-    g.c[0] = f.c[0];
-    [[unroll]] for (int band = 1; band < 4; ++band) {
-        const int first = band * band, width = 2 * band + 1;
-        const int base = band == 1 ? 0 : (band == 2 ? 9 : 34);
-        [[unroll]] for (int i = 0; i < width; ++i) {
-            float sum = 0.0;
-            [[unroll]] for (int j = 0; j < width; ++j)
-                sum += denseRotations[instance].m[base + i * width + j] * f.c[first + j];
-            g.c[first + i] = sum;
-        }
-    }
-    return g;
-}
-
 void main()
 {
     const SceneCluster cluster = clusters[visible[gl_WorkGroupID.x]];
@@ -39,7 +22,7 @@ void main()
     const GpuInstance self = instances[cluster.instance];
     const ReceiverTexels texels = receivers[cluster.firstReceiver + gl_LocalInvocationID.x];
     const Receiver receiver = makeReceiver(self, texels.geometry);
-    Sh4 transfer = transferSh(rotateDense(selfVisibility(texels.selfVisibility, kSelfScale), cluster.instance), receiver);
+    Sh4 transfer = transferSh(shRotateDense(selfVisibility(texels.selfVisibility, kSelfScale), denseRotations[cluster.instance]), receiver);
 
     for (uint i = 0u; i < count; ++i) {
         const uint occluder = lists[list + 1u + i];
@@ -56,7 +39,7 @@ void main()
                 sum.c[k] += weight * steps.c[k];
         }
         const Sh4 visibility = fieldVisibility(sum, entity.bandScale * cell.decay);
-        transfer = shProduct(rotateDense(visibility, occluder), transfer);
+        transfer = shProduct(shRotateDense(visibility, denseRotations[occluder]), transfer);
     }
 
     vec3 b = vec3(0.0);

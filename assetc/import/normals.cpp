@@ -3,13 +3,13 @@
 #include "assetc/import/vertex_key.h"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
 #include <unordered_map>
 
 namespace penumbra {
 
 namespace {
-
-constexpr std::size_t kMaxCompared = 256; // bounds the quadratic work around one position
 
 using glm::dvec3;
 
@@ -66,39 +66,94 @@ bool isGiven(vec3 normal)
     return squared > 1e-12f && squared < 1e12f; // false for NaN
 }
 
+// A corner's edge from the star's position to another one.
+struct StarEdge {
+    std::uint32_t otherPosition;
+    std::uint32_t corner; // within the star
+    auto operator<=>(const StarEdge&) const = default;
+};
+
+// The groups of corners around one position that share a normal.
+class StarGroups {
+public:
+    // `corners` of one position; edges between faces that meet at less than the crease join groups.
+    void build(const MeshAsset& mesh, const Stars& stars, const std::vector<dvec3>& faceNormals,
+               std::span<const std::uint32_t> corners)
+    {
+        m_parents.resize(corners.size());
+        std::iota(m_parents.begin(), m_parents.end(), 0u);
+        m_edges.clear();
+        for (std::uint32_t i = 0; i < corners.size(); ++i) {
+            const std::uint32_t face = corners[i] - corners[i] % 3;
+            m_edges.push_back({stars.positionOf[face + (corners[i] + 1) % 3], i});
+            m_edges.push_back({stars.positionOf[face + (corners[i] + 2) % 3], i});
+        }
+        std::sort(m_edges.begin(), m_edges.end());
+        // Four faces at an edge, as where two thin sheets touch, are all compared.
+        for (std::size_t e = 1; e < m_edges.size(); ++e)
+            for (std::size_t back = 1; back <= std::min<std::size_t>(e, 3); ++back)
+                joinAcross(m_edges[e - back], m_edges[e], faceNormals, corners);
+        m_sums.assign(corners.size(), dvec3(0.0));
+        for (std::uint32_t i = 0; i < corners.size(); ++i)
+            m_sums[root(i)] += angleAt(mesh, corners[i]) * faceNormals[corners[i] / 3];
+    }
+
+    [[nodiscard]] vec3 normal(std::uint32_t corner, dvec3 faceNormal)
+    {
+        const dvec3 sum = m_sums[root(corner)];
+        const double size = glm::length(sum);
+        return {size > 1e-6 ? sum / size : faceNormal}; // opposite faces cancel
+    }
+
+private:
+    void joinAcross(const StarEdge& a, const StarEdge& b, const std::vector<dvec3>& faceNormals,
+                    std::span<const std::uint32_t> corners)
+    {
+        if (a.otherPosition == b.otherPosition &&
+            glm::dot(faceNormals[corners[a.corner] / 3], faceNormals[corners[b.corner] / 3]) >=
+                kCreaseCosine)
+            m_parents[root(b.corner)] = root(a.corner);
+    }
+
+    std::uint32_t root(std::uint32_t i)
+    {
+        while (m_parents[i] != i)
+            i = m_parents[i] = m_parents[m_parents[i]];
+        return i;
+    }
+
+    std::vector<std::uint32_t> m_parents; // [cornerCount of the star]
+    std::vector<StarEdge> m_edges;
+    std::vector<dvec3> m_sums; // [cornerCount of the star], at roots
+};
+
 } // namespace
 
 std::vector<vec3> cornerNormals(const MeshAsset& mesh)
 {
     std::vector<vec3> result(mesh.indices.size());
-    const bool allGiven =
-        std::all_of(mesh.indices.begin(), mesh.indices.end(),
-                    [&](std::uint32_t vertex) { return isGiven(mesh.normals[vertex]); });
-    const Stars stars = allGiven ? Stars{} : buildStars(mesh);
-    std::vector<dvec3> faceNormals(allGiven ? 0 : mesh.indices.size() / 3);
+    bool allGiven = true;
+    for (std::size_t corner = 0; corner < result.size(); ++corner) {
+        const vec3 given = mesh.normals[mesh.indices[corner]];
+        result[corner] = isGiven(given) ? normalize(given) : vec3{0};
+        allGiven = allGiven && isGiven(given);
+    }
+    if (allGiven)
+        return result;
+
+    const Stars stars = buildStars(mesh);
+    std::vector<dvec3> faceNormals(mesh.indices.size() / 3);
     for (std::size_t face = 0; face < faceNormals.size(); ++face)
         faceNormals[face] = faceNormal(mesh, face);
-
-    for (std::uint32_t corner = 0; corner < result.size(); ++corner) {
-        if (const vec3 given = mesh.normals[mesh.indices[corner]]; isGiven(given)) {
-            result[corner] = normalize(given);
-            continue;
-        }
-        const std::uint32_t position = stars.positionOf[corner];
-        const std::uint32_t begin = stars.begins[position];
-        const std::uint32_t end = stars.begins[position + 1];
-        const dvec3 own = faceNormals[corner / 3];
-        dvec3 sum(0.0);
-        // Around a crowded position all corners share the sum of the first ones, so the work stays
-        // linear.
-        const bool crowded = end - begin > kMaxCompared;
-        for (std::uint32_t i = begin; i < std::min<std::size_t>(end, begin + kMaxCompared); ++i) {
-            const dvec3 other = faceNormals[stars.corners[i] / 3];
-            if (crowded || glm::dot(own, other) >= kCreaseCosine)
-                sum += angleAt(mesh, stars.corners[i]) * other;
-        }
-        const double size = glm::length(sum);
-        result[corner] = vec3(size > 1e-6 ? sum / size : own);
+    StarGroups groups;
+    for (std::size_t position = 0; position + 1 < stars.begins.size(); ++position) {
+        const std::span<const std::uint32_t> corners(stars.corners.data() + stars.begins[position],
+                                                     stars.corners.data() +
+                                                         stars.begins[position + 1]);
+        groups.build(mesh, stars, faceNormals, corners);
+        for (std::uint32_t i = 0; i < corners.size(); ++i)
+            if (result[corners[i]] == vec3{0})
+                result[corners[i]] = groups.normal(i, faceNormals[corners[i] / 3]);
     }
     return result;
 }

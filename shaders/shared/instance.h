@@ -96,9 +96,10 @@ struct FrameConstants {
     float backgroundIntensity;
 };
 
-// A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band 1, 2, 3.
+// A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band 1, 2, 3, 83 numbers
+// packed in order. Vectors of 4, because a storage buffer read costs the same for 1 number as for 4.
 struct DenseRotation {
-    float m[83];
+    vec4 m[21];
 };
 
 // What a combine kernel needs of an occluder.
@@ -196,6 +197,7 @@ PENUMBRA_FN vec3 linear(vec4 row0, vec4 row1, vec4 row2, vec3 v)
 PENUMBRA_FN DenseRotation denseRotation(ShRotation r)
 {
     DenseRotation d;
+    d.m[20].w = 0.0f;
     for (int j = 1; j < 16; ++j) {
         Sh4 unit;
         for (int i = 0; i < 16; ++i)
@@ -205,9 +207,34 @@ PENUMBRA_FN DenseRotation denseRotation(ShRotation r)
         const int first = band * band, width = 2 * band + 1;
         const int base = band == 1 ? 0 : (band == 2 ? 9 : 34);
         for (int i = 0; i < width; ++i)
-            d.m[base + i * width + (j - first)] = image.c[first + i];
+            d.m[(base + i * width + (j - first)) / 4][(base + i * width + (j - first)) % 4] = image.c[first + i];
     }
     return d;
+}
+
+PENUMBRA_FN Sh4 shRotateDense(Sh4 f, DenseRotation d)
+{
+    Sh4 g;
+    g.c[0] = f.c[0];
+    for (int i = 0; i < 3; ++i) {
+        float sum = 0.0f;
+        for (int j = 0; j < 3; ++j)
+            sum += d.m[(3 * i + j) / 4][(3 * i + j) % 4] * f.c[1 + j];
+        g.c[1 + i] = sum;
+    }
+    for (int i = 0; i < 5; ++i) {
+        float sum = 0.0f;
+        for (int j = 0; j < 5; ++j)
+            sum += d.m[(9 + 5 * i + j) / 4][(9 + 5 * i + j) % 4] * f.c[4 + j];
+        g.c[4 + i] = sum;
+    }
+    for (int i = 0; i < 7; ++i) {
+        float sum = 0.0f;
+        for (int j = 0; j < 7; ++j)
+            sum += d.m[(34 + 7 * i + j) / 4][(34 + 7 * i + j) % 4] * f.c[9 + j];
+        g.c[9 + i] = sum;
+    }
+    return g;
 }
 
 PENUMBRA_END
@@ -219,6 +246,6 @@ static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels
 static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 160);
 static_assert(sizeof(penumbra::CullResult) == 32 && offsetof(penumbra::CullResult, combineGroups) == 12);
 static_assert(sizeof(penumbra::FrameConstants) == 1024 && offsetof(penumbra::FrameConstants, clusterCount) == 1008);
-static_assert(sizeof(penumbra::DenseRotation) == 332);
+static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif
 #endif

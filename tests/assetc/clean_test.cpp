@@ -109,6 +109,24 @@ TEST(CleanMesh, RefusesWhatCannotBeBaked)
     }
 }
 
+// The tip of a sharp cone is one vertex, though faces across it differ by far more than the crease:
+// only edges count.
+TEST(CleanMesh, TipOfAConeIsNotSplit)
+{
+    MeshAsset mesh;
+    constexpr std::uint32_t kRim = 24;
+    mesh.positions.emplace_back(0, 2, 0);
+    for (std::uint32_t i = 0; i < kRim; ++i) {
+        const float angle = 6.28318531f * static_cast<float>(i) / static_cast<float>(kRim);
+        mesh.positions.emplace_back(cos(angle), 0, -sin(angle));
+        mesh.indices.insert(mesh.indices.end(), {0, 1 + i, 1 + (i + 1) % kRim});
+    }
+    mesh.normals.assign(mesh.positions.size(), vec3{0});
+    ASSERT_TRUE(cleanMesh(mesh));
+    EXPECT_EQ(mesh.positions.size(), kRim + 1);
+    EXPECT_LT(length(mesh.normals[0] - vec3(0, 1, 0)), 1e-6f);
+}
+
 // A fan around one position must not cost the square of its size.
 TEST(CleanMesh, CrowdedPositionIsLinear)
 {

@@ -36,23 +36,6 @@ Receiver makeReceiver(const GpuInstance& g, const uvec4& geometry, const FrameCo
     return r;
 }
 
-Sh4 rotateDense(const Sh4& f, const DenseRotation& rotation)
-{
-    Sh4 g;
-    g.c[0] = f.c[0];
-    for (int band = 1; band < 4; ++band) {
-        const int first = band * band, width = 2 * band + 1;
-        const int base = band == 1 ? 0 : band == 2 ? 9 : 34;
-        for (int i = 0; i < width; ++i) {
-            float sum = 0;
-            for (int j = 0; j < width; ++j)
-                sum += rotation.m[base + i * width + j] * f.c[first + j];
-            g.c[first + i] = sum;
-        }
-    }
-    return g;
-}
-
 Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity, const vec3& p)
 {
     const FieldCell cell = fieldCell(p, entity.grid);
@@ -131,12 +114,12 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
         const Sh4 ownVisibility = selfVisibility(texels.selfVisibility, kSelfVisibilityScale);
         vec3 sum(0);
         if (kernel == Kernel::Literal) {
-            Sh4 transfer = transferSh(rotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
+            Sh4 transfer = transferSh(shRotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
             for (const std::uint32_t occluder : visible.occluders) {
                 const FieldEntity entity = instanceField(instances.instances[occluder]);
                 const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1, entity.fieldFromWorld2, receiver.position);
                 const Sh4 visibility = sampleTrilinear(scene.fieldSamples, entity, p);
-                transfer = shProduct(rotateDense(visibility, instances.dense[occluder]), transfer);
+                transfer = shProduct(shRotateDense(visibility, instances.dense[occluder]), transfer);
             }
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);

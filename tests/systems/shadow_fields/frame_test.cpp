@@ -93,8 +93,8 @@ TEST_F(FrameTest, InstanceUpdateEqualsTwin)
         const auto* cpu = reinterpret_cast<const float*>(&twin.instances[i]);
         for (std::size_t k = 0; k < sizeof(GpuInstance) / 4; ++k)
             EXPECT_NEAR(gpu[k], cpu[k], 2e-5 * std::max(1.0f, std::abs(cpu[k]))) << i << ' ' << k;
-        for (std::size_t k = 0; k < 83; ++k)
-            EXPECT_NEAR(drawn.dense[i].m[k], twin.dense[i].m[k], 2e-5);
+        for (std::size_t k = 0; k < 21; ++k)
+            EXPECT_LT(length(drawn.dense[i].m[k] - twin.dense[i].m[k]), 4e-5f);
     }
 }
 
