@@ -41,7 +41,7 @@ int runWithoutWindow(const DemoOptions& options)
     Result<Device> device = createDevice(*instance, {.choice = options.device});
     if (!device)
         return report(device.error());
-    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed});
+    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed, options.environment});
     if (!scene)
         return report(scene.error());
     if (Result<void> done = runHeadless(*device, **scene, options); !done)

@@ -33,6 +33,7 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     std::uint32_t reference = 1024;
     options.assets = defaultAssets();
     app.add_option("--scene", options.scene, "scene to show")->capture_default_str();
+    app.add_option("--environment", options.environment, "name of a .env of the assets to light the scene with");
     app.add_flag("--list-scenes", options.listScenes, "list the scenes and stop");
     app.add_option("--size", size, "picture size, WxH")->capture_default_str();
     app.add_option("--frames", options.frames, "stop after N frames (headless: 240)");

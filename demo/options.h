@@ -11,7 +11,7 @@
 namespace penumbra {
 
 struct DemoOptions {
-    std::string scene = "falling";
+    std::string scene = "falling", environment;
     bool listScenes = false, listDevices = false;
     std::uint32_t width = 1280, height = 720;
     std::uint32_t frames = 0; // 0: until the window closes; headless: 240

@@ -30,6 +30,7 @@ struct DemoScene {
 struct SceneOptions {
     std::filesystem::path assets; // folder of compiled assets
     std::uint64_t seed = 1;
+    std::string environment;      // name of a .env in `assets`; empty: the scene's own
 };
 
 struct SceneEntry {

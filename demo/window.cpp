@@ -130,7 +130,7 @@ struct Show {
 Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent2D extent)
 {
     Show show;
-    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed});
+    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed, options.environment});
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);

@@ -196,10 +196,10 @@ def nodes():
         exact = sum(w * y[i] * y[j] * y[k] for _, w, y in RULE)
         worst = max(worst, abs(exact - sum(w * y[i] * y[j] * y[k] for w, y in ys)))
     assert len(points) == 32 and worst < 1e-13, worst
-    lines += ["// xyz: direction, w: weight (the weights sum to 4 pi).", "#ifdef __cplusplus",
-              "inline const vec4 kShNodes[32] = {"]
+    lines += ["// xyz: direction, w: weight (the weights sum to 4 pi).", "#ifdef __cplusplus", "inline const vec4 kShNodes[32] = {",
+              "#else", "const vec4 kShNodes[32] = vec4[32](", "#endif"]
     lines.append(",\n".join("    vec4(" + ", ".join(number(c + 0.0) for c in (*q, w)) + ")" for q, w in points))
-    lines += ["};", "#endif", "", "PENUMBRA_FN ShNodal shNodes(Sh4 f)", "{", "    ShNodal n;"] + code + ["    return n;", "}"]
+    lines += ["#ifdef __cplusplus", "};", "#else", ");", "#endif", "", "PENUMBRA_FN ShNodal shNodes(Sh4 f)", "{", "    ShNodal n;"] + code + ["    return n;", "}"]
     return lines
 
 

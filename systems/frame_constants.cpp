@@ -1,5 +1,7 @@
 #include "systems/frame_constants.h"
 
+#include "assets/sh_basis.h"
+
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -18,7 +20,7 @@ View viewOf(const Camera& camera, float aspect)
 
 LightSh environmentLight(const Environment& environment, float intensity)
 {
-    LightSh light = environment.sh4;
+    LightSh light = environment.sh6;
     for (vec3& coefficient : light)
         coefficient *= intensity;
     return light;
@@ -52,10 +54,11 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     for (int k = 0; k < 16; ++k)
         frame.light[k] = vec4(light[static_cast<std::size_t>(k)], 0);
     for (int n = 0; n < 32; ++n) {
-        const Sh4 basis = shBasis(vec3(kShNodes[n]));
+        std::array<double, 36> basis{};
+        shBasisAnyOrder(6, glm::dvec3(kShNodes[n]), basis);
         vec3 radiance(0);
-        for (std::size_t k = 0; k < 16; ++k)
-            radiance += light[k] * basis.c[k];
+        for (std::size_t k = 0; k < light.size(); ++k)
+            radiance += light[k] * static_cast<float>(basis[k]);
         frame.lightNodes[n] = vec4(radiance * kShNodes[n].w, 0);
     }
     return frame;

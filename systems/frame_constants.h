@@ -14,8 +14,9 @@ struct View {
 
 View viewOf(const Camera& camera, float aspect);
 
-// Radiance in SH of order 4, times an intensity.
-using LightSh = std::array<vec3, 16>;
+// Radiance in SH of order 6, times an intensity. Kernel literal takes the first 16, the papers' order 4; kernel exact all,
+// at its nodes.
+using LightSh = std::array<vec3, 36>;
 LightSh environmentLight(const Environment& environment, float intensity);
 
 // The environment above solid, dark ground at y = 0: map and SH without the directions below the horizon. The product of

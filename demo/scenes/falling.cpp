@@ -27,10 +27,11 @@ struct Look {
     vec3 albedo;
     float glossFraction, glossExponent;
 };
+// Exponents that order 4 can carry: at 4, the lobe times P_4 integrates to an eighth of the lobe itself.
 constexpr Look kLooks[] = {
-    {{0.72f, 0.70f, 0.66f}, 0, 0},     {{0.70f, 0.28f, 0.18f}, 0, 0},        {{0.20f, 0.42f, 0.62f}, 0.45f, 6},
-    {{0.78f, 0.60f, 0.22f}, 0.5f, 7},  {{0.30f, 0.55f, 0.32f}, 0, 0},        {{0.55f, 0.24f, 0.45f}, 0.35f, 5},
-    {{0.75f, 0.72f, 0.70f}, 0.5f, 6},  {{0.18f, 0.55f, 0.55f}, 0, 0},
+    {{0.72f, 0.70f, 0.66f}, 0, 0},     {{0.70f, 0.28f, 0.18f}, 0, 0},        {{0.20f, 0.42f, 0.62f}, 0.45f, 4},
+    {{0.78f, 0.60f, 0.22f}, 0.5f, 4},  {{0.30f, 0.55f, 0.32f}, 0, 0},        {{0.55f, 0.24f, 0.45f}, 0.35f, 4},
+    {{0.75f, 0.72f, 0.70f}, 0.5f, 4},  {{0.18f, 0.55f, 0.55f}, 0, 0},
 };
 
 // SplitMix64 (Steele et al. 2014): a scene must not depend on the library's generators.
@@ -93,9 +94,10 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
     auto scene = std::make_unique<DemoScene>();
     scene->name = "falling";
     scene->ground = true;
-    scene->exposure = 1.0f;
+    scene->exposure = 1.6f;
     scene->camera = {.target = vec3(0, 0.22f, 0), .distance = 4.1f, .yaw = 0.55f, .pitch = 0.52f, .fieldOfView = 0.62f};
-    Result<Environment> environment = loadEnvironment(options.assets / "courtyard.env");
+    Result<Environment> environment = loadEnvironment(
+        options.assets / ((options.environment.empty() ? "sunset" : options.environment) + ".env"));
     if (!environment)
         return environment.error();
     scene->environment = std::move(*environment);

@@ -4,6 +4,9 @@
 // xyz: direction, w: weight (the weights sum to 4 pi).
 #ifdef __cplusplus
 inline const vec4 kShNodes[32] = {
+#else
+const vec4 kShNodes[32] = vec4[32](
+#endif
     vec4(0.0f, 0.850650808f, 0.525731112f, 0.373999125f),
     vec4(0.0f, -0.850650808f, 0.525731112f, 0.373999125f),
     vec4(0.0f, 0.850650808f, -0.525731112f, 0.373999125f),
@@ -36,7 +39,10 @@ inline const vec4 kShNodes[32] = {
     vec4(-0.577350269f, 0.577350269f, -0.577350269f, 0.403919055f),
     vec4(0.577350269f, -0.577350269f, -0.577350269f, 0.403919055f),
     vec4(-0.577350269f, -0.577350269f, -0.577350269f, 0.403919055f)
+#ifdef __cplusplus
 };
+#else
+);
 #endif
 
 PENUMBRA_FN ShNodal shNodes(Sh4 f)

@@ -54,18 +54,58 @@ PENUMBRA_FN Sh4 phongLobe(vec3 mirror, float e)
     return shZonal(mirror, scale);
 }
 
-// T in nodal form: the factors are multiplied node by node and never truncated.
+// A polynomial of degree 4 in the cosine to an axis: c.x + c.y t + c.z t^2 + c.w t^3 + quartic t^4.
+struct ZonalPolynomial {
+    vec4 c;
+    float quartic;
+};
+
+// max(0, t) up to band 4: 1/4 P_0 + 1/2 P_1 + 5/16 P_2 - 3/32 P_4 (Ramamoorthi and Hanrahan 2001, eq. 19).
+PENUMBRA_FN ZonalPolynomial cosinePolynomial()
+{
+    ZonalPolynomial p;
+    p.c = vec4(0.05859375f, 0.5f, 0.8203125f, 0.0f);
+    p.quartic = -0.41015625f;
+    return p;
+}
+
+// (e + 2) / (2 pi) max(0, t)^e up to band 4: sum of (2l + 1) / 2 m_l P_l(t), m_l the integral of t^e P_l over [0, 1].
+PENUMBRA_FN ZonalPolynomial phongPolynomial(float e)
+{
+    const float n = (e + 2.0f) * 0.159154943f;
+    const float i0 = 1.0f / (e + 1.0f), i1 = 1.0f / (e + 2.0f), i2 = 1.0f / (e + 3.0f), i3 = 1.0f / (e + 4.0f),
+                i4 = 1.0f / (e + 5.0f); // integrals of t^(e + k)
+    const float m0 = 0.5f * n * i0;
+    const float m1 = 1.5f * n * i1;
+    const float m2 = 2.5f * n * 0.5f * (3.0f * i2 - i0);
+    const float m3 = 3.5f * n * 0.5f * (5.0f * i3 - 3.0f * i1);
+    const float m4 = 4.5f * n * 0.125f * (35.0f * i4 - 30.0f * i2 + 3.0f * i0);
+    ZonalPolynomial p;
+    p.c = vec4(m0 - 0.5f * m2 + 0.375f * m4, m1 - 1.5f * m3, 1.5f * m2 - 3.75f * m4, 2.5f * m3);
+    p.quartic = 4.375f * m4;
+    return p;
+}
+
+PENUMBRA_FN float zonalValue(ZonalPolynomial p, float t)
+{
+    return p.c.x + t * (p.c.y + t * (p.c.z + t * (p.c.w + t * p.quartic)));
+}
+
+// T in nodal form: the factors are multiplied node by node and never truncated. The lobes go up to band 4, one more than
+// the fields: with light up to band 5 their product has degree 9, which the rule still integrates exactly, and the
+// unshadowed radiance is right up to band 4 instead of 3.
 PENUMBRA_FN ShNodal transferNodal(Sh4 visibility, Receiver receiver)
 {
-    ShNodal t = shMultiply(shNodes(visibility), shNodes(cosineLobe(receiver.normal)));
+    ShNodal t = shNodes(visibility);
     const float diffuse = (1.0f - receiver.glossFraction) * 0.318309886f;
-    if (receiver.glossFraction > 0.0f) {
-        const ShNodal phong = shNodes(phongLobe(receiver.mirror, receiver.glossExponent));
-        for (int i = 0; i < 32; ++i)
-            t.v[i] *= diffuse + receiver.glossFraction * phong.v[i];
-    } else {
-        for (int i = 0; i < 32; ++i)
-            t.v[i] *= diffuse;
+    const ZonalPolynomial cosine = cosinePolynomial();
+    const ZonalPolynomial phong = phongPolynomial(receiver.glossExponent);
+    for (int i = 0; i < 32; ++i) {
+        const vec3 node = vec3(kShNodes[i].x, kShNodes[i].y, kShNodes[i].z);
+        float brdf = diffuse;
+        if (receiver.glossFraction > 0.0f)
+            brdf += receiver.glossFraction * zonalValue(phong, dot(receiver.mirror, node));
+        t.v[i] *= brdf * zonalValue(cosine, dot(receiver.normal, node));
     }
     return t;
 }

@@ -2,6 +2,7 @@
 
 #include "tests/shared/random_sphere.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace penumbra {
@@ -80,21 +81,39 @@ TEST(Transfer, EnergyOfAGlossyReceiverAtNormalIncidence)
     }
 }
 
-TEST(Transfer, NodalAndShFormsAgree)
+// Band 4 of both lobes, against numbers: the integral with P_4 over the sphere.
+TEST(Transfer, PolynomialsAreTheLobesUpToBandFour)
+{
+    const auto exact = [](float e, double t) { return t <= 0 ? 0 : e == 0 ? t : (e + 2) / (2 * M_PI) * std::pow(t, e); };
+    for (const float e : {0.0f, 2.0f, 5.0f}) { // 0: the cosine
+        const ZonalPolynomial p = e == 0 ? cosinePolynomial() : phongPolynomial(e);
+        for (int band = 0; band <= 5; ++band) {
+            double truth = 0, polynomial = 0;
+            constexpr int kSteps = 20000;
+            for (int i = 0; i < kSteps; ++i) {
+                const double t = -1 + (i + 0.5) * 2 / kSteps;
+                const double legendre = std::legendre(static_cast<unsigned>(band), t);
+                truth += exact(e, t) * legendre * 2 / kSteps;
+                polynomial += zonalValue(p, static_cast<float>(t)) * legendre * 2 / kSteps;
+            }
+            EXPECT_NEAR(polynomial, band <= 4 ? truth : 0, 2e-5) << e << ' ' << band;
+        }
+    }
+}
+
+// Light of order 5 and the lobe's band 4 have degree 8 together: the nodes integrate their product exactly.
+TEST(Transfer, NodalIrradianceIsExactUpToBandFour)
 {
     RandomSphere random(5);
-    for (int trial = 0; trial < 50; ++trial) {
-        Sh4 visibility = one();
-        const Sh4 noise = random.function();
-        for (int k = 0; k < 16; ++k)
-            visibility.c[k] += 0.2f * noise.c[k];
-        const Receiver receiver{vec3(0), random.direction(), random.direction(), 0, 0};
-        const Sh4 light = random.function();
-        const ShNodal nodal = transferNodal(visibility, receiver);
-        float sum = 0;
-        for (int n = 0; n < 32; ++n)
-            sum += kShNodes[n].w * nodal.v[n] * evaluate(light, vec3(kShNodes[n]));
-        EXPECT_NEAR(sum, shDot(transferSh(visibility, receiver), light), 1e-5);
+    for (int trial = 0; trial < 20; ++trial) {
+        const vec3 n = random.direction(), d = random.direction();
+        const Receiver receiver{vec3(0), n, random.direction(), 0, 0};
+        const ShNodal nodal = transferNodal(one(), receiver);
+        // The light P_4(d . w): its irradiance is A_4 P_4(d . n), A_4 = -pi / 24.
+        double sum = 0;
+        for (int i = 0; i < 32; ++i)
+            sum += static_cast<double>(kShNodes[i].w) * nodal.v[i] * std::legendre(4u, static_cast<double>(dot(d, vec3(kShNodes[i]))));
+        EXPECT_NEAR(sum * M_PI, -M_PI / 24 * std::legendre(4u, std::clamp(static_cast<double>(dot(d, n)), -1.0, 1.0)), 1e-5);
     }
 }
 
