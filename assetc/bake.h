@@ -1,11 +1,12 @@
-// Baking of visibility by line-space rasterisation: per direction of an antipodal set, the mesh is rasterised once
-// orthographically, keeping the nearest and farthest depth of every line; a sample p is blocked along w if the farthest
-// depth on its line lies beyond p.w, and along -w if the nearest lies before it. One raster serves every sample of every
-// shell, inside the bounding sphere too, and every vertex. Deterministic for any thread count.
+// Baking of visibility by line-space rasterisation: per direction of an antipodal set, the mesh is
+// rasterised once orthographically, keeping the nearest and farthest depth of every line; a sample
+// p is blocked along w if the farthest depth on its line lies beyond p.w, and along -w if the
+// nearest lies before it. One raster serves every sample of every shell, inside the bounding sphere
+// too, and every vertex. Deterministic for any thread count.
 #pragma once
 
-#include "assets/mesh_asset.h"
 #include "assetc/progress.h"
+#include "assets/mesh_asset.h"
 
 namespace penumbra {
 
@@ -22,8 +23,10 @@ struct BakeResult {
     ShadowField field;
 };
 
-// `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid. Uses the TBB arena of the caller.
+// `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid. Uses the TBB arena of
+// the caller.
 BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
-                    const std::vector<std::uint32_t>& indices, const BakeOptions& options, Progress& progress);
+                    const std::vector<std::uint32_t>& indices, const BakeOptions& options,
+                    Progress& progress);
 
 } // namespace penumbra

@@ -12,7 +12,8 @@ Result<AssetHandle> AssetStore::loadMesh(const std::filesystem::path& path)
         if (m_entries[i].path == key)
             return AssetHandle{i};
 
-    constexpr std::uint64_t kMaxAssetBytes = 1u << 30; // twice the largest field and mesh that the format allows
+    constexpr std::uint64_t kMaxAssetBytes =
+        1u << 30; // twice the largest field and mesh that the format allows
     Result<std::vector<std::byte>> bytes = readFile(path, kMaxAssetBytes);
     if (!bytes)
         return bytes.error();
@@ -31,7 +32,8 @@ AssetHandle AssetStore::addMesh(MeshAsset mesh)
 
 const MeshAsset& AssetStore::mesh(AssetHandle handle) const
 {
-    PENUMBRA_ASSERT(handle.index < m_entries.size(), "asset {} of {}", handle.index, m_entries.size());
+    PENUMBRA_ASSERT(handle.index < m_entries.size(), "asset {} of {}", handle.index,
+                    m_entries.size());
     return *m_entries[handle.index].mesh;
 }
 

@@ -2,7 +2,7 @@
 // look at and to importance-sample. Both say the same by construction: the SH are projected from
 // the very map that is kept, after its rounding to half floats, so light, background and the
 // ray-traced truth agree, and a difference between picture and truth is never one between two maps.
-// File format .env: docs/environment_format.md. World space, +Y up; the mapping of the map is
+// File format .env: docs/asset_format.md. World space, +Y up; the mapping of the map is
 // shaders/shared/environment.h: row 0 looks up, the middle column along +X. Radiance is constant
 // over a map pixel, that is, the map is a function on the sphere without a filter.
 #pragma once

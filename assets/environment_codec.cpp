@@ -1,4 +1,4 @@
-// The bytes of a .env file; the layout is a contract, in docs/environment_format.md.
+// The bytes of a .env file; the layout is a contract, in docs/asset_format.md.
 #include "assets/environment.h"
 
 #include <bit>

@@ -96,8 +96,8 @@ ShadowField readFieldHead(const JsonReader& extension)
     return field;
 }
 
-std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& extension, std::span<const std::byte> bin,
-                                     JsonProblems& problems)
+std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& extension,
+                                     std::span<const std::byte> bin, JsonProblems& problems)
 {
     const std::size_t before = problems.size();
     ShadowField field = readFieldHead(extension);
@@ -110,7 +110,8 @@ std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& e
         return std::nullopt;
     }
     if (byteLength != fieldTexelBytes(field)) {
-        extension.refuse(fmt::format("has byteLength {}, the shells need {}", byteLength, fieldTexelBytes(field)));
+        extension.refuse(fmt::format("has byteLength {}, the shells need {}", byteLength,
+                                     fieldTexelBytes(field)));
         return std::nullopt;
     }
     auto texels = decodeFieldTexels(field, payload);
@@ -148,13 +149,18 @@ struct GeometryHead {
     std::array<std::uint32_t, 4> selfVisibility{};
 };
 
-GeometryHead readGeometryHead(const JsonReader& root, const JsonReader& primitive, std::span<const std::byte> bin)
+GeometryHead readGeometryHead(const JsonReader& root, const JsonReader& primitive,
+                              std::span<const std::byte> bin)
 {
     const JsonReader compressed = primitive.member("extensions").member(kDracoExtension);
     const JsonReader ids = compressed.member("attributes");
-    const auto idOf = [&](const char* name) { return static_cast<std::uint32_t>(ids.count(name, kMaxViews)); };
+    const auto idOf = [&](const char* name) {
+        return static_cast<std::uint32_t>(ids.count(name, kMaxViews));
+    };
     const auto countOf = [&](const JsonReader& accessor) {
-        return root.member("accessors").element(accessor.asCount(kMaxViews)).count("count", kMaxMeshTriangles * 3);
+        return root.member("accessors")
+            .element(accessor.asCount(kMaxViews))
+            .count("count", kMaxMeshTriangles * 3);
     };
     GeometryHead head;
     head.payload = readView(root, compressed.count("bufferView", kMaxViews), bin);
@@ -176,8 +182,9 @@ Result<void> readGeometry(const GeometryHead& head, MeshAsset& mesh)
     mesh.indices = draco->indices();
     const std::size_t vertexCount = draco->vertexCount();
     if (vertexCount != head.vertexCount || mesh.indices.size() != head.indexCount)
-        return Error{fmt::format("Draco payload has {} vertices and {} indices, its accessors {} and {}", vertexCount,
-                                 mesh.indices.size(), head.vertexCount, head.indexCount)};
+        return Error{
+            fmt::format("Draco payload has {} vertices and {} indices, its accessors {} and {}",
+                        vertexCount, mesh.indices.size(), head.vertexCount, head.indexCount)};
     const auto positions = draco->floats(head.position, 3);
     if (!positions)
         return positions.error();
@@ -187,8 +194,10 @@ Result<void> readGeometry(const GeometryHead& head, MeshAsset& mesh)
     mesh.positions.resize(vertexCount);
     mesh.normals.resize(vertexCount);
     std::memcpy(mesh.positions.data(), positions->data(), positions->size() * sizeof(float));
-    for (std::size_t i = 0; i < vertexCount; ++i) // a zero normal becomes NaN, which validateMesh refuses
-        mesh.normals[i] = normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
+    for (std::size_t i = 0; i < vertexCount;
+         ++i) // a zero normal becomes NaN, which validateMesh refuses
+        mesh.normals[i] =
+            normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
     mesh.selfVisibility.resize(vertexCount);
     for (std::size_t part = 0; part < 4; ++part) {
         const auto quarter = draco->bytes(head.selfVisibility[part], 4);
@@ -206,7 +215,8 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
     const JsonReader root(document, "gltf", problems);
     const JsonReader source = root.member("meshes").element(0);
     if (!source.has("extensions") || !source.member("extensions").has(kFieldExtension)) {
-        source.refuse(fmt::format("has no {}: not a compiled asset; compile it with assetc bake", kFieldExtension));
+        source.refuse(fmt::format("has no {}: not a compiled asset; compile it with assetc bake",
+                                  kFieldExtension));
         return;
     }
     const JsonReader extension = source.member("extensions").member(kFieldExtension);
@@ -215,7 +225,8 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
         return; // another version may mean anything by the rest
     const float scale = extension.number("selfVisibilityScale", 0, 1);
     if (std::abs(scale - kSelfVisibilityScale) > 1e-6f)
-        extension.refuse(fmt::format("has selfVisibilityScale {}, version 1 has {}", scale, kSelfVisibilityScale));
+        extension.refuse(fmt::format("has selfVisibilityScale {}, version 1 has {}", scale,
+                                     kSelfVisibilityScale));
 
     mesh.name = source.has("name") ? source.text("name") : "";
     const JsonReader primitive = source.member("primitives").element(0);
@@ -238,7 +249,8 @@ std::optional<MeshAsset> decode(std::span<const std::byte> bytes, JsonProblems& 
     };
     try {
         if (bytes.size() > kMaxMeshAssetBytes)
-            return refuse({fmt::format("{} bytes, more than {}", bytes.size(), kMaxMeshAssetBytes)});
+            return refuse(
+                {fmt::format("{} bytes, more than {}", bytes.size(), kMaxMeshAssetBytes)});
         const Result<GlbView> glb = readGlb(bytes);
         if (!glb)
             return refuse(glb.error());

@@ -10,8 +10,9 @@ namespace penumbra {
 
 namespace {
 
-constexpr std::uint32_t kComparedFrames = 12; // spread over the run; the scalar path takes most of the time
-constexpr int kRepeats = 5;                   // per frame and kernel, the fastest counts: machines are shared
+constexpr std::uint32_t kComparedFrames =
+    12;                     // spread over the run; the scalar path takes most of the time
+constexpr int kRepeats = 5; // per frame and kernel, the fastest counts: machines are shared
 
 struct KernelRun {
     RunStatistics statistics;
@@ -30,8 +31,9 @@ double largestDifference(const std::vector<vec4>& a, const std::vector<vec4>& b)
 
 } // namespace
 
-Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const DemoScene& scene, const View& view,
-                               std::uint32_t frames, const std::filesystem::path& file)
+Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const DemoScene& scene,
+                               const View& view, std::uint32_t frames,
+                               const std::filesystem::path& file)
 {
     constexpr Kernel kKernels[] = {Kernel::Literal, Kernel::Exact};
     KernelRun runs[std::size(kKernels)];
@@ -70,7 +72,8 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
                 }
             }
         }
-        const CpuFrame cpu = combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
+        const CpuFrame cpu =
+            combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
         scalar.add("combine", cpu.combineMs);
         scalarPairs += static_cast<double>(cpu.pairs);
 
@@ -83,30 +86,34 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
         ratios.add("exactVsLiteral", literal / exact);
         ratios.add("exactVsScalar", cpu.combineMs / exact);
         ratios.add("combineVsRaster", exact / raster);
-        maxDifference = std::max(maxDifference, largestDifference(runs[0].radiance, runs[1].radiance));
+        maxDifference =
+            std::max(maxDifference, largestDifference(runs[0].radiance, runs[1].radiance));
     }
 
     const std::uint32_t compared = frames / every;
     const auto entry = [&](double ms, double pairs) {
-        return nlohmann::ordered_json{{"combineMs", ms}, {"pairsPerSecond", pairs / compared / (ms / 1000)}};
+        return nlohmann::ordered_json{{"combineMs", ms},
+                                      {"pairsPerSecond", pairs / compared / (ms / 1000)}};
     };
     nlohmann::ordered_json kernels;
     for (std::size_t k = 0; k < std::size(kKernels); ++k)
-        kernels[std::string(kernelName(kKernels[k]))] = entry(runs[k].statistics.at("combine"), runs[k].pairs);
+        kernels[std::string(kernelName(kKernels[k]))] =
+            entry(runs[k].statistics.at("combine"), runs[k].pairs);
     kernels["cpu-scalar"] = entry(scalar.at("combine"), scalarPairs);
-    const nlohmann::ordered_json json{
-        {"scene", scene.name},
-        {"frames", compared},
-        {"kernels", kernels},
-        {"rasterMs", ratios.at("raster")},
-        {"cullSortMs", ratios.at("cullSort")},
-        {"ratios", {{"exactVsLiteral", ratios.at("exactVsLiteral")},
-                    {"exactVsScalar", ratios.at("exactVsScalar")},
-                    {"combineVsRaster", ratios.at("combineVsRaster")}}},
-        {"maxAbsDifference", {{"exactVsLiteral", maxDifference}}}};
-    fmt::print("combine: literal {:.2f} ms, exact {:.2f} ms, cpu-scalar {:.1f} ms; exact is {:.1f} x literal, {:.1f} x scalar\n",
-               runs[0].statistics.at("combine"), runs[1].statistics.at("combine"), scalar.at("combine"),
-               ratios.at("exactVsLiteral"), ratios.at("exactVsScalar"));
+    const nlohmann::ordered_json json{{"scene", scene.name},
+                                      {"frames", compared},
+                                      {"kernels", kernels},
+                                      {"rasterMs", ratios.at("raster")},
+                                      {"cullSortMs", ratios.at("cullSort")},
+                                      {"ratios",
+                                       {{"exactVsLiteral", ratios.at("exactVsLiteral")},
+                                        {"exactVsScalar", ratios.at("exactVsScalar")},
+                                        {"combineVsRaster", ratios.at("combineVsRaster")}}},
+                                      {"maxAbsDifference", {{"exactVsLiteral", maxDifference}}}};
+    fmt::print("combine: literal {:.2f} ms, exact {:.2f} ms, cpu-scalar {:.1f} ms; exact is {:.1f} "
+               "x literal, {:.1f} x scalar\n",
+               runs[0].statistics.at("combine"), runs[1].statistics.at("combine"),
+               scalar.at("combine"), ratios.at("exactVsLiteral"), ratios.at("exactVsScalar"));
     return writeFile(file, json.dump(2) + "\n");
 }
 

@@ -1,4 +1,5 @@
-// --compare-kernels: the same frames drawn with every kernel and on the scalar CPU path, interleaved in one process.
+// --compare-kernels: the same frames drawn with every kernel and on the scalar CPU path,
+// interleaved in one process.
 #pragma once
 
 #include "demo/renderer.h"
@@ -6,7 +7,8 @@
 
 namespace penumbra {
 
-Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const DemoScene& scene, const View& view,
-                               std::uint32_t frames, const std::filesystem::path& file);
+Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const DemoScene& scene,
+                               const View& view, std::uint32_t frames,
+                               const std::filesystem::path& file);
 
 } // namespace penumbra

@@ -1,4 +1,5 @@
-// Device "cpu-scalar": cull, sort and combine on one thread of the CPU with kernel literal, the way Zhou et al. ran it.
+// Device "cpu-scalar": cull, sort and combine on one thread of the CPU with kernel literal, the way
+// Zhou et al. ran it.
 #pragma once
 
 #include "systems/techniques/shadow_fields/combine_cpu.h"

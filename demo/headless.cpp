@@ -36,14 +36,16 @@ struct Measurements {
 std::uint64_t gpuBytes(const GpuSceneBuffers& b)
 {
     std::uint64_t sum = 0;
-    for (const Buffer* buffer : {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices, &b.bounds, &b.clusters,
-                                 &b.cull, &b.visible, &b.lists, &b.radiance, &b.drawCommands, &b.drawTemplate, &b.denseRotations})
+    for (const Buffer* buffer : {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices,
+                                 &b.bounds, &b.clusters, &b.cull, &b.visible, &b.lists, &b.radiance,
+                                 &b.drawCommands, &b.drawTemplate, &b.denseRotations})
         sum += buffer->bytes;
     return sum;
 }
 
-nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer, const DemoScene& scene,
-                                     const DemoOptions& options, const Measurements& measured)
+nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
+                                     const DemoScene& scene, const DemoOptions& options,
+                                     const Measurements& measured)
 {
     const SceneData& data = renderer.scene().data();
     std::uint64_t dynamic = 0, occluders = 0;
@@ -66,33 +68,37 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer, c
             {"triangles", data.triangleCount},
             {"visibleReceivers", measured.visibleReceivers},
             {"pairs", measured.pairs},
-            {"frameMs", {{"median", quantile(measured.frameMs, 0.5)},
-                         {"p95", quantile(measured.frameMs, 0.95)},
-                         {"min", quantile(measured.frameMs, 0)}}},
+            {"frameMs",
+             {{"median", quantile(measured.frameMs, 0.5)},
+              {"p95", quantile(measured.frameMs, 0.95)},
+              {"min", quantile(measured.frameMs, 0)}}},
             {"cpuMs", measured.cpu.medians()},
             {"gpuMs", measured.gpu.medians()},
-            {"bytes", {{"fields", data.fieldSamples.size() * sizeof(uvec4)},
-                       {"meshes", data.receivers.size() * sizeof(ReceiverTexels) + data.indices.size() * 4},
-                       {"gpu", gpuBytes(renderer.scene().buffers())},
-                       {"peakRss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}}}};
+            {"bytes",
+             {{"fields", data.fieldSamples.size() * sizeof(uvec4)},
+              {"meshes", data.receivers.size() * sizeof(ReceiverTexels) + data.indices.size() * 4},
+              {"gpu", gpuBytes(renderer.scene().buffers())},
+              {"peakRss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}}}};
 }
 
 void showProgress(std::uint32_t frame, std::uint32_t frames)
 {
     if (::isatty(STDERR_FILENO) == 1)
-        fmt::print(stderr, "\r\033[Kframe {} of {}{}", frame + 1, frames, frame + 1 == frames ? "\n" : "");
+        fmt::print(stderr, "\r\033[Kframe {} of {}{}", frame + 1, frames,
+                   frame + 1 == frames ? "\n" : "");
 }
 
 // Moves the scene by one frame and draws it; adds to `measured`.
-Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& view, const DemoOptions& options,
-                      Measurements& measured)
+Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& view,
+                      const DemoOptions& options, Measurements& measured)
 {
     const auto start = Clock::now();
     for (const ChangedInstance& changed : simulation.advance(1.0f / 60))
         renderer.scene().setInstance(changed.index, moved(renderer.scene().data(), changed));
     measured.cpu.add("simulate", millisecondsSince(start));
     if (options.cpuScalar) {
-        const CpuFrame cpu = combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
+        const CpuFrame cpu =
+            combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
         measured.cpu.add("cullSort", cpu.cullSortMs);
         measured.cpu.add("combine", cpu.combineMs);
         measured.pairs = cpu.pairs;
@@ -103,7 +109,8 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
     const auto drawing = Clock::now();
     if (Result<void> drawn = renderer.drawFrame(view, options.kernel, !options.cpuScalar); !drawn)
         return drawn;
-    measured.cpu.add("draw", millisecondsSince(drawing)); // record, submit and wait: all of the GPU's time too
+    measured.cpu.add(
+        "draw", millisecondsSince(drawing)); // record, submit and wait: all of the GPU's time too
     measured.frameMs.push_back(millisecondsSince(start));
     ++measured.frames;
     if (options.benchmark.empty() || options.cpuScalar)
@@ -120,20 +127,23 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
 Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptions& options)
 {
     SceneData data = extractScene(scene.world, scene.assets);
-    Result<std::unique_ptr<Renderer>> made =
-        Renderer::create(device, scene, std::move(data), {.extent = {options.width, options.height}});
+    Result<std::unique_ptr<Renderer>> made = Renderer::create(
+        device, scene, std::move(data), {.extent = {options.width, options.height}});
     if (!made)
         return made.error();
     Renderer& renderer = **made;
     Simulation simulation(scene);
-    const View view = viewOf(scene.camera, static_cast<float>(options.width) / static_cast<float>(options.height));
+    const View view = viewOf(scene.camera, static_cast<float>(options.width) /
+                                               static_cast<float>(options.height));
 
     if (!options.compareKernels.empty())
-        return runCompareKernels(renderer, simulation, scene, view, options.frames, options.compareKernels);
+        return runCompareKernels(renderer, simulation, scene, view, options.frames,
+                                 options.compareKernels);
 
     std::optional<VideoWriter> video;
     if (!options.record.empty()) {
-        Result<VideoWriter> opened = VideoWriter::open(options.record, options.width, options.height, 60);
+        Result<VideoWriter> opened =
+            VideoWriter::open(options.record, options.width, options.height, 60);
         if (!opened)
             return opened.error();
         video = std::move(*opened);
@@ -150,7 +160,8 @@ Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptio
                 return image.error();
             Result<void> written = video ? video->addFrame(*image) : Result<void>{};
             if (written && picture)
-                written = writePng(options.out / fmt::format("{}_{:04}.png", scene.name, f + 1), *image);
+                written =
+                    writePng(options.out / fmt::format("{}_{:04}.png", scene.name, f + 1), *image);
             if (!written)
                 return written;
         }
@@ -164,20 +175,23 @@ Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptio
         Result<CullResult> cull = renderer.cullResult();
         if (!cull)
             return cull.error();
-        measured.visibleReceivers = static_cast<std::uint64_t>(cull->combineGroups[0]) * kClusterReceivers;
+        measured.visibleReceivers =
+            static_cast<std::uint64_t>(cull->combineGroups[0]) * kClusterReceivers;
         measured.pairs = static_cast<std::uint64_t>(cull->pairs) * kClusterReceivers;
     }
     const double median = quantile(measured.frameMs, 0.5);
-    fmt::print("{}: {} frames at {}x{}, {:.1f} frames per second (median {:.2f} ms) on {}\n", scene.name, measured.frames,
-               options.width, options.height, 1000 / median, median,
+    fmt::print("{}: {} frames at {}x{}, {:.1f} frames per second (median {:.2f} ms) on {}\n",
+               scene.name, measured.frames, options.width, options.height, 1000 / median, median,
                options.cpuScalar ? "one CPU thread" : device.properties.deviceName);
     if (!options.benchmark.empty()) {
-        const std::string json = benchmarkJson(device, renderer, scene, options, measured).dump(2) + "\n";
+        const std::string json =
+            benchmarkJson(device, renderer, scene, options, measured).dump(2) + "\n";
         if (Result<void> written = writeFile(options.benchmark, json); !written)
             return written;
     }
     if (options.reference) {
-        const std::filesystem::path out = options.out.empty() ? std::filesystem::path("out") : options.out;
+        const std::filesystem::path out =
+            options.out.empty() ? std::filesystem::path("out") : options.out;
         return runReference(renderer, scene, view, {*options.reference, options.kernel, out});
     }
     return {};

@@ -1,4 +1,5 @@
-// A run without a window: frames at 60 per second of scene time to PNG, film, benchmark and reference.
+// A run without a window: frames at 60 per second of scene time to PNG, film, benchmark and
+// reference.
 #pragma once
 
 #include "demo/options.h"

@@ -27,13 +27,15 @@ int listDevicesTo(const Instance& instance)
         for (const std::string& reason : (*devices)[i].missing)
             fmt::print("   unusable: {}\n", reason);
     }
-    fmt::print("cpu-scalar  one CPU thread, the papers' algorithm; the picture is drawn by device 0\n");
+    fmt::print(
+        "cpu-scalar  one CPU thread, the papers' algorithm; the picture is drawn by device 0\n");
     return 0;
 }
 
 int runWithoutWindow(const DemoOptions& options)
 {
-    Result<Instance> instance = createInstance({.applicationName = "penumbra-demo", .validation = options.validate});
+    Result<Instance> instance =
+        createInstance({.applicationName = "penumbra-demo", .validation = options.validate});
     if (!instance)
         return report(instance.error());
     if (options.listDevices)
@@ -41,13 +43,15 @@ int runWithoutWindow(const DemoOptions& options)
     Result<Device> device = createDevice(*instance, {.choice = options.device});
     if (!device)
         return report(device.error());
-    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed, options.environment});
+    Result<std::unique_ptr<DemoScene>> scene =
+        loadScene(options.scene, {options.assets, options.seed, options.environment});
     if (!scene)
         return report(scene.error());
     if (Result<void> done = runHeadless(*device, **scene, options); !done)
         return report(done.error());
     if (instance->validationCount() > 0)
-        return report({fmt::format("{} validation messages, see above", instance->validationCount())});
+        return report(
+            {fmt::format("{} validation messages, see above", instance->validationCount())});
     return 0;
 }
 

@@ -12,8 +12,8 @@ namespace {
 bool parseSize(const std::string& text, std::uint32_t& width, std::uint32_t& height)
 {
     char rest = 0;
-    return std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) == 2 && width >= 16 && height >= 16 &&
-           width <= 8192 && height <= 8192;
+    return std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &rest) == 2 && width >= 16 &&
+           height >= 16 && width <= 8192 && height <= 8192;
 }
 
 // Beside the program: build/release/bin -> build/release/assets.
@@ -33,29 +33,40 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     std::uint32_t reference = 1024;
     options.assets = defaultAssets();
     app.add_option("--scene", options.scene, "scene to show")->capture_default_str();
-    app.add_option("--environment", options.environment, "name of a .env of the assets to light the scene with");
+    app.add_option("--environment", options.environment,
+                   "name of a .env of the assets to light the scene with");
     app.add_flag("--list-scenes", options.listScenes, "list the scenes and stop");
     app.add_option("--size", size, "picture size, WxH")->capture_default_str();
     app.add_option("--frames", options.frames, "stop after N frames (headless: 240)");
-    app.add_flag("--headless", options.headless, "no window: render to files at 60 frames per second of scene time");
+    app.add_flag("--headless", options.headless,
+                 "no window: render to files at 60 frames per second of scene time");
     app.add_option("--out", options.out, "folder for PNG files and reference.json");
     app.add_option("--record", options.record, "write an MP4 film");
     app.add_option("--benchmark", options.benchmark, "write timings as JSON");
     CLI::Option* referenceOption =
-        app.add_option("--reference", reference, "ray-trace the last frame with N directions per receiver (1024)")
+        app.add_option("--reference", reference,
+                       "ray-trace the last frame with N directions per receiver (1024)")
             ->expected(0, 1);
-    app.add_option("--kernel", kernel, "literal or exact")->capture_default_str()->check(CLI::IsMember({"literal", "exact"}));
-    app.add_option("--compare-kernels", options.compareKernels, "time all kernels on the same frames, write JSON");
-    app.add_option("--receivers", receivers, "what receives light")->capture_default_str()->check(CLI::IsMember({"vertex"}));
+    app.add_option("--kernel", kernel, "literal or exact")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"literal", "exact"}));
+    app.add_option("--compare-kernels", options.compareKernels,
+                   "time all kernels on the same frames, write JSON");
+    app.add_option("--receivers", receivers, "what receives light")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"vertex"}));
     app.add_option("--device", options.device, "name or index of a device, or cpu-scalar");
     app.add_flag("--list-devices", options.listDevices, "list the devices and stop");
     app.add_option("--seed", options.seed, "seed of the scene")->capture_default_str();
-    app.add_flag("--validate", options.validate, "Vulkan validation; its messages make the run fail");
+    app.add_flag("--validate", options.validate,
+                 "Vulkan validation; its messages make the run fail");
     app.add_option("--assets", options.assets, "folder of compiled assets");
     try {
         app.parse(argc, argv);
         if (!parseSize(size, options.width, options.height))
-            throw CLI::ValidationError("--size", "'" + size + "' is not WxH with sides of 16 to 8192, for example 1280x720");
+            throw CLI::ValidationError(
+                "--size",
+                "'" + size + "' is not WxH with sides of 16 to 8192, for example 1280x720");
         if (reference < 16 || reference > 65536)
             throw CLI::ValidationError("--reference", "directions per receiver: 16 to 65536");
     } catch (const CLI::ParseError& error) {
@@ -69,8 +80,9 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
         options.device.clear();
     }
     // Files that are made of whole runs need no window.
-    const bool filesOnly = !options.out.empty() || !options.record.empty() || !options.benchmark.empty() ||
-                           !options.compareKernels.empty() || options.reference || options.cpuScalar;
+    const bool filesOnly = !options.out.empty() || !options.record.empty() ||
+                           !options.benchmark.empty() || !options.compareKernels.empty() ||
+                           options.reference || options.cpuScalar;
     options.headless = options.headless || filesOnly;
     if (options.headless && options.frames == 0)
         options.frames = 240;

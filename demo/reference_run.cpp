@@ -15,7 +15,8 @@ namespace {
 
 mat4 worldFromObject(const GpuInstance& g)
 {
-    return glm::transpose(mat4(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec4(0, 0, 0, 1)));
+    return glm::transpose(
+        mat4(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec4(0, 0, 0, 1)));
 }
 
 // Every vertex of a visible cluster, and where its radiance lies in the frame's buffer.
@@ -24,7 +25,8 @@ struct Receivers {
     std::vector<std::uint32_t> radianceIndex;
 };
 
-Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances, const FrameConstants& constants)
+Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances,
+                           const FrameConstants& constants)
 {
     Receivers out;
     for (const ClusterOccluders& visible : cullAndSort(data, instances, constants)) {
@@ -35,10 +37,12 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances,
             if (cluster.firstReceiver + v >= mesh.firstReceiver + mesh.vertexCount)
                 break; // padding
             const uvec4 texel = data.receivers[cluster.firstReceiver + v].geometry;
-            const vec3 local(uintBitsToFloat(texel.x), uintBitsToFloat(texel.y), uintBitsToFloat(texel.z));
+            const vec3 local(uintBitsToFloat(texel.x), uintBitsToFloat(texel.y),
+                             uintBitsToFloat(texel.z));
             ReferenceReceiver r;
             r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, local);
-            r.normal = normalize(linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, unpackNormal(texel.w)));
+            r.normal = normalize(linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2,
+                                        unpackNormal(texel.w)));
             r.toEye = normalize(vec3(constants.eye) - r.position);
             r.material = r.instance = cluster.instance;
             out.receivers.push_back(r);
@@ -54,14 +58,16 @@ Image8 displayImage(std::span<const vec3> radiance, VkExtent2D extent, float exp
     for (std::size_t i = 0; i < radiance.size(); ++i) {
         const vec3 color = displayColor(radiance[i], exposure);
         for (int c = 0; c < 3; ++c)
-            image.rgba[4 * i + static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
+            image.rgba[4 * i + static_cast<std::size_t>(c)] =
+                static_cast<std::uint8_t>(color[c] * 255.0f + 0.5f);
     }
     return image;
 }
 
 } // namespace
 
-Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View& view, const ReferenceRunOptions& options)
+Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View& view,
+                          const ReferenceRunOptions& options)
 {
     using Clock = std::chrono::steady_clock;
     const SceneData& data = renderer.scene().data();
@@ -80,7 +86,8 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     std::vector<ReferenceInstance> referenceInstances;
     std::vector<MeshMaterial> materials;
     for (std::uint32_t i = 0; i < data.instances.size(); ++i) {
-        referenceInstances.push_back({meshes[data.instances[i].mesh], worldFromObject(instances.instances[i]), i});
+        referenceInstances.push_back(
+            {meshes[data.instances[i].mesh], worldFromObject(instances.instances[i]), i});
         materials.push_back(data.instances[i].material);
     }
     Result<ReferenceScene> traced = ReferenceScene::build(referenceInstances, materials);
@@ -98,16 +105,20 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     for (const std::uint32_t index : receivers.radianceIndex)
         test.push_back(vec3((*radiance)[index]));
     const RadianceErrors errors = compareRadiance(test, truth.shadowed, truth.unshadowed);
-    const RadianceErrors lightError = compareRadiance(truth4.shadowed, truth.shadowed, truth.unshadowed);
+    const RadianceErrors lightError =
+        compareRadiance(truth4.shadowed, truth.shadowed, truth.unshadowed);
     const RadianceErrors fieldError = compareRadiance(test, truth4.shadowed, truth4.unshadowed);
 
-    // Pictures: per pixel, which no vertex interpolation touches. The background shows the whole map.
+    // Pictures: per pixel, which no vertex interpolation touches. The background shows the whole
+    // map.
     const VkExtent2D extent = renderer.extent();
     mat4 flipY(1);
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
-    const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, extent.width, extent.height};
+    const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, extent.width,
+                                 extent.height};
     // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
-    const ReferencePicture picture = renderReference(*traced, sky, camera, {.samples = std::max(options.samples / 4, 64u)});
+    const ReferencePicture picture =
+        renderReference(*traced, sky, camera, {.samples = std::max(options.samples / 4, 64u)});
     const Image8 shaded = displayImage(picture.radiance.shadowed, extent, scene.exposure);
     Image8 reference = *fields;
     for (std::size_t i = 0; i < picture.instance.size(); ++i)
@@ -118,9 +129,11 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
 
     std::vector<vec4> errorRadiance(data.radianceCount, vec4(0, 0, 0, 1));
     const std::vector<float> perReceiver = errorPerReceiver(test, truth.shadowed);
-    for (std::size_t i = 0; i < perReceiver.size(); ++i) // white: a quarter of the mean unshadowed radiance
-        errorRadiance[receivers.radianceIndex[i]] =
-            vec4(vec3(perReceiver[i] * 4 / static_cast<float>(errors.meanUnshadowed)) / scene.exposure, 1);
+    for (std::size_t i = 0; i < perReceiver.size();
+         ++i) // white: a quarter of the mean unshadowed radiance
+        errorRadiance[receivers.radianceIndex[i]] = vec4(
+            vec3(perReceiver[i] * 4 / static_cast<float>(errors.meanUnshadowed)) / scene.exposure,
+            1);
     if (Result<void> set = renderer.setRadiance(errorRadiance); !set)
         return set;
     if (Result<void> drawn = renderer.drawFrame(view, options.kernel, false); !drawn)
@@ -140,22 +153,28 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         {"bias", errors.bias},
         {"maxAbs", errors.maxAbs},
         {"flip", flipped.mean},
-        {"byCause", {{"lightBandLimit", lightError.rmse / errors.meanUnshadowed},
-                     {"fieldsAndProducts", fieldError.rmse / errors.meanUnshadowed}}},
+        {"byCause",
+         {{"lightBandLimit", lightError.rmse / errors.meanUnshadowed},
+          {"fieldsAndProducts", fieldError.rmse / errors.meanUnshadowed}}},
         {"referenceSeconds", truth.seconds},
         {"pictureSeconds", picture.radiance.seconds},
         {"fieldSeconds", fieldSeconds}};
     Result<void> done = writeFile(options.out / "reference.json", json.dump(2) + "\n");
-    for (const auto& [name, image] : {std::pair{"fields.png", *fields}, {"reference.png", reference}, {"error.png", *errorImage},
-                                      {"flip.png", heatMap(extent.width, extent.height, flipped.map, 0.5f)},
-                                      {"side_by_side.png", sideBySide(std::array{*fields, reference})}})
+    for (const auto& [name, image] :
+         {std::pair{"fields.png", *fields},
+          {"reference.png", reference},
+          {"error.png", *errorImage},
+          {"flip.png", heatMap(extent.width, extent.height, flipped.map, 0.5f)},
+          {"side_by_side.png", sideBySide(std::array{*fields, reference})}})
         if (done)
             done = writePng(options.out / name, image);
     if (done)
-        fmt::print("reference ({} directions, {} receivers): rmseRelative {:.4f} (order-4 light {:.4f}, fields {:.4f}), "
+        fmt::print("reference ({} directions, {} receivers): rmseRelative {:.4f} (order-4 light "
+                   "{:.4f}, fields {:.4f}), "
                    "bias {:+.4f}, FLIP {:.4f}; {:.1f} s traced, {:.1f} ms with fields\n",
-                   options.samples, receivers.receivers.size(), errors.rmseRelative, lightError.rmse / errors.meanUnshadowed,
-                   fieldError.rmse / errors.meanUnshadowed, errors.bias / errors.meanUnshadowed, flipped.mean, truth.seconds,
+                   options.samples, receivers.receivers.size(), errors.rmseRelative,
+                   lightError.rmse / errors.meanUnshadowed, fieldError.rmse / errors.meanUnshadowed,
+                   errors.bias / errors.meanUnshadowed, flipped.mean, truth.seconds,
                    1000 * fieldSeconds);
     return done;
 }

@@ -8,10 +8,12 @@ namespace penumbra {
 struct ReferenceRunOptions {
     std::uint32_t samples = 1024;
     Kernel kernel = Kernel::Exact;
-    std::filesystem::path out; // folder for reference.json, fields.png, reference.png, error.png, flip.png
+    std::filesystem::path
+        out; // folder for reference.json, fields.png, reference.png, error.png, flip.png
 };
 
 // Draws the frame of `view` and compares every visible receiver. Prints a summary line.
-Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View& view, const ReferenceRunOptions& options);
+Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View& view,
+                          const ReferenceRunOptions& options);
 
 } // namespace penumbra

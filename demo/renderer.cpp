@@ -7,19 +7,21 @@
 
 namespace penumbra {
 
-Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const DemoScene& scene, SceneData data,
-                                                   const RendererOptions& options)
+Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const DemoScene& scene,
+                                                   SceneData data, const RendererOptions& options)
 {
     std::unique_ptr<Renderer> renderer(new Renderer(device));
     Result<FramePasses> passes = createFramePasses(device);
     if (!passes)
         return passes.error();
     renderer->m_passes = std::move(*passes);
-    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(data), scene.environment, renderer->m_ring.framesInFlight());
+    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(data), scene.environment,
+                                                 renderer->m_ring.framesInFlight());
     if (!gpuScene)
         return gpuScene.error();
     renderer->m_scene = std::move(*gpuScene);
-    renderer->m_light = environmentLight(scene.ground ? aboveGround(scene.environment) : scene.environment, scene.intensity);
+    renderer->m_light = environmentLight(
+        scene.ground ? aboveGround(scene.environment) : scene.environment, scene.intensity);
     renderer->m_backgroundIntensity = scene.intensity;
     renderer->m_exposure = scene.exposure;
     if (Result<void> sized = renderer->resize(options.extent); !sized)
@@ -39,11 +41,13 @@ Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool comb
     m_kernel = kernel;
     Result<GpuFrame> frame = m_ring.beginFrame();
     if (frame)
-        recordFrame(*frame, m_passes, m_scene, constants(view), {kernel, combine, m_exposure}, m_targets);
+        recordFrame(*frame, m_passes, m_scene, constants(view), {kernel, combine, m_exposure},
+                    m_targets);
     return frame;
 }
 
-Result<void> Renderer::endFrame(std::span<const VkSemaphoreSubmitInfo> waits, std::span<const VkSemaphoreSubmitInfo> signals)
+Result<void> Renderer::endFrame(std::span<const VkSemaphoreSubmitInfo> waits,
+                                std::span<const VkSemaphoreSubmitInfo> signals)
 {
     return m_ring.endFrame(waits, signals);
 }
@@ -66,8 +70,10 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     Result<void> failed;
     const auto time = [&](const char* name, auto&& record) {
         const auto start = Clock::now();
-        Result<void> done = submitAndWait(m_device, [&](VkCommandBuffer cmd) { record(GpuFrame{.cmd = cmd, .slot = m_slot}); });
-        milliseconds[name] = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        Result<void> done = submitAndWait(
+            m_device, [&](VkCommandBuffer cmd) { record(GpuFrame{.cmd = cmd, .slot = m_slot}); });
+        milliseconds[name] =
+            std::chrono::duration<double, std::milli>(Clock::now() - start).count();
         if (!done)
             failed = done;
     };
@@ -91,7 +97,8 @@ Result<void> Renderer::resize(VkExtent2D extent)
 
 Result<Image8> Renderer::capture() const
 {
-    Result<std::vector<std::byte>> pixels = readBack(m_device, m_targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    Result<std::vector<std::byte>> pixels =
+        readBack(m_device, m_targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     if (!pixels)
         return pixels.error();
     Image8 image = makeImage(extent().width, extent().height);
@@ -99,11 +106,15 @@ Result<Image8> Renderer::capture() const
     return image;
 }
 
-Result<std::vector<vec4>> Renderer::radiance() const { return readBackAs<vec4>(m_device, m_scene.buffers().radiance); }
+Result<std::vector<vec4>> Renderer::radiance() const
+{
+    return readBackAs<vec4>(m_device, m_scene.buffers().radiance);
+}
 
 Result<CullResult> Renderer::cullResult() const
 {
-    Result<std::vector<CullResult>> result = readBackAs<CullResult>(m_device, m_scene.buffers().cull);
+    Result<std::vector<CullResult>> result =
+        readBackAs<CullResult>(m_device, m_scene.buffers().cull);
     if (!result)
         return result.error();
     return result->front();

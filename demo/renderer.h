@@ -1,4 +1,5 @@
-// A scene on a device: draws frames, times them, and hands out pictures and radiance. Used by all modes of the demo.
+// A scene on a device: draws frames, times them, and hands out pictures and radiance. Used by all
+// modes of the demo.
 #pragma once
 
 #include "demo/image/image.h"
@@ -19,19 +20,21 @@ struct RendererOptions {
 class Renderer {
 public:
     // `scene`'s environment and the instances of `data`; the device outlives the renderer.
-    static Result<std::unique_ptr<Renderer>> create(const Device& device, const DemoScene& scene, SceneData data,
-                                                    const RendererOptions& options);
+    static Result<std::unique_ptr<Renderer>> create(const Device& device, const DemoScene& scene,
+                                                    SceneData data, const RendererOptions& options);
 
-    // Begins a frame, records it up to the display image, and leaves the command buffer open: end it with endFrame, or
-    // record a copy of display() first.
+    // Begins a frame, records it up to the display image, and leaves the command buffer open: end
+    // it with endFrame, or record a copy of display() first.
     Result<GpuFrame> beginFrame(const View& view, Kernel kernel, bool combine = true);
-    Result<void> endFrame(std::span<const VkSemaphoreSubmitInfo> waits = {}, std::span<const VkSemaphoreSubmitInfo> signals = {});
+    Result<void> endFrame(std::span<const VkSemaphoreSubmitInfo> waits = {},
+                          std::span<const VkSemaphoreSubmitInfo> signals = {});
 
     // A whole frame, finished when this returns.
     Result<void> drawFrame(const View& view, Kernel kernel, bool combine = true);
 
-    // The passes of the frame last drawn once more, each in a submission of its own: milliseconds by name, as the CPU's
-    // clock sees them. Timestamps will not do on lavapipe, which runs compute at once and writes timestamps later.
+    // The passes of the frame last drawn once more, each in a submission of its own: milliseconds
+    // by name, as the CPU's clock sees them. Timestamps will not do on lavapipe, which runs compute
+    // at once and writes timestamps later.
     Result<std::map<std::string, double>> timePasses(Kernel kernel);
 
     Result<void> resize(VkExtent2D extent);

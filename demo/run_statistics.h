@@ -13,14 +13,18 @@ inline double quantile(std::vector<double> values, double q)
 {
     if (values.empty())
         return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+    const auto at = values.begin() +
+                    static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
 
 class RunStatistics {
 public:
-    void add(const std::string& name, double milliseconds) { m_times[name].push_back(milliseconds); }
+    void add(const std::string& name, double milliseconds)
+    {
+        m_times[name].push_back(milliseconds);
+    }
     void add(const std::map<std::string, double>& milliseconds)
     {
         for (const auto& [name, ms] : milliseconds)

@@ -10,7 +10,8 @@ namespace penumbra {
 std::span<const SceneEntry> sceneEntries()
 {
     static constexpr SceneEntry kScenes[] = {
-        {"falling", "20 objects of 8 shapes fall on a floor, collide and come to rest", loadFallingScene},
+        {"falling", "20 objects of 8 shapes fall on a floor, collide and come to rest",
+         loadFallingScene},
     };
     return kScenes;
 }
@@ -23,7 +24,8 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
             return entry.load(options);
         names.push_back(entry.name);
     }
-    return Error{fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
+    return Error{
+        fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
 }
 
 Result<Environment> loadEnvironment(const std::filesystem::path& path)

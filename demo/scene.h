@@ -20,17 +20,17 @@ struct DemoScene {
     AssetStore assets;
     ecs::World world;
     std::optional<PhysicsWorld> physics;
-    Environment environment;     // the whole map, for the background
-    bool ground = false;         // y < 0 is solid: light comes from above the horizon only
-    float intensity = 1;         // of the environment
-    float exposure = 1;          // display value per W/(m² sr)
+    Environment environment; // the whole map, for the background
+    bool ground = false;     // y < 0 is solid: light comes from above the horizon only
+    float intensity = 1;     // of the environment
+    float exposure = 1;      // display value per W/(m² sr)
     Camera camera;
 };
 
 struct SceneOptions {
     std::filesystem::path assets; // folder of compiled assets
     std::uint64_t seed = 1;
-    std::string environment;      // name of a .env in `assets`; empty: the scene's own
+    std::string environment; // name of a .env in `assets`; empty: the scene's own
 };
 
 struct SceneEntry {

@@ -7,13 +7,14 @@ namespace penumbra {
 Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", "extract"})
 {
     if (scene.physics) {
-        m_schedule.add<const RigidBody, Transform>("physics", "simulate", [this, &scene](ecs::SystemContext& context) {
-            stepPhysics(context, *scene.physics, m_seconds);
-        });
+        m_schedule.add<const RigidBody, Transform>(
+            "physics", "simulate", [this, &scene](ecs::SystemContext& context) {
+                stepPhysics(context, *scene.physics, m_seconds);
+            });
     }
-    m_schedule.add<const Transform, const RenderInstance>("gather", "extract", [this](ecs::SystemContext& context) {
-        gatherChanged(context, m_changed);
-    });
+    m_schedule.add<const Transform, const RenderInstance>(
+        "gather", "extract",
+        [this](ecs::SystemContext& context) { gatherChanged(context, m_changed); });
 }
 
 std::span<const ChangedInstance> Simulation::advance(float seconds)

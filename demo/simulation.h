@@ -1,4 +1,5 @@
-// The CPU side of a frame: the ECS schedule that moves a scene, and what the renderer is told of it.
+// The CPU side of a frame: the ECS schedule that moves a scene, and what the renderer is told of
+// it.
 #pragma once
 
 #include "demo/scene.h"
@@ -15,7 +16,10 @@ public:
     // Advances the scene and returns the instances that moved.
     std::span<const ChangedInstance> advance(float seconds);
 
-    [[nodiscard]] std::vector<ecs::Schedule::Timing> timings() const { return m_schedule.timings(); }
+    [[nodiscard]] std::vector<ecs::Schedule::Timing> timings() const
+    {
+        return m_schedule.timings();
+    }
 
 private:
     float m_seconds = 0;

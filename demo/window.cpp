@@ -56,10 +56,13 @@ void onCursor(GLFWwindow* window, double x, double y)
     Camera& camera = c.camera;
     if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
         camera.yaw -= dx * kRadiansPerPixel;
-        camera.pitch = std::clamp(camera.pitch + dy * kRadiansPerPixel, 0.02f, 1.5f); // stays above the floor
+        camera.pitch =
+            std::clamp(camera.pitch + dy * kRadiansPerPixel, 0.02f, 1.5f); // stays above the floor
     } else if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
         const float metresPerPixel = camera.distance * 0.001f;
-        camera.target += metresPerPixel * (-dx * vec3(std::cos(camera.yaw), 0, -std::sin(camera.yaw)) + dy * vec3(0, 1, 0));
+        camera.target +=
+            metresPerPixel *
+            (-dx * vec3(std::cos(camera.yaw), 0, -std::sin(camera.yaw)) + dy * vec3(0, 1, 0));
         camera.target.y = std::max(camera.target.y, 0.0f);
     }
 }
@@ -67,7 +70,8 @@ void onCursor(GLFWwindow* window, double x, double y)
 void onScroll(GLFWwindow* window, double, double steps)
 {
     auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-    c.camera.distance = std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
+    c.camera.distance =
+        std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
 }
 
 void onKey(GLFWwindow* window, int key, int, int action, int)
@@ -97,13 +101,15 @@ Result<GLFWwindow*> openWindow(Glfw& glfw, const DemoOptions& options)
     if (!glfwInit()) {
         const char* reason = nullptr;
         glfwGetError(&reason);
-        return Error{fmt::format("no display ({}); add --headless to render to files", reason ? reason : "GLFW gives no reason")};
+        return Error{fmt::format("no display ({}); add --headless to render to files",
+                                 reason ? reason : "GLFW gives no reason")};
     }
     glfw.ready = true;
     if (!glfwVulkanSupported())
         return Error{"no Vulkan driver; install mesa-vulkan-drivers or the driver of your GPU"};
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    glfw.window = glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), "Penumbra", nullptr, nullptr);
+    glfw.window = glfwCreateWindow(static_cast<int>(options.width),
+                                   static_cast<int>(options.height), "Penumbra", nullptr, nullptr);
     if (!glfw.window)
         return Error{"the display refuses a window; add --headless to render to files"};
     return glfw.window;
@@ -111,10 +117,14 @@ Result<GLFWwindow*> openWindow(Glfw& glfw, const DemoOptions& options)
 
 void copyToWindow(VkCommandBuffer cmd, const Image& display, const Swapchain& swapchain)
 {
-    transitionImage(cmd, swapchain.image(), VK_IMAGE_ASPECT_COLOR_BIT, kUndefinedImage, kCopyTarget);
-    const auto corner = [](VkExtent2D e) { return VkOffset3D{static_cast<int>(e.width), static_cast<int>(e.height), 1}; };
+    transitionImage(cmd, swapchain.image(), VK_IMAGE_ASPECT_COLOR_BIT, kUndefinedImage,
+                    kCopyTarget);
+    const auto corner = [](VkExtent2D e) {
+        return VkOffset3D{static_cast<int>(e.width), static_cast<int>(e.height), 1};
+    };
     const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    const VkImageBlit blit{layers, {{}, corner(display.extent)}, layers, {{}, corner(swapchain.extent())}};
+    const VkImageBlit blit{
+        layers, {{}, corner(display.extent)}, layers, {{}, corner(swapchain.extent())}};
     vkCmdBlitImage(cmd, display.handle, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, swapchain.image(),
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit, VK_FILTER_NEAREST);
     transitionImage(cmd, swapchain.image(), VK_IMAGE_ASPECT_COLOR_BIT, kCopyTarget, kPresent);
@@ -130,12 +140,14 @@ struct Show {
 Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent2D extent)
 {
     Show show;
-    Result<std::unique_ptr<DemoScene>> scene = loadScene(options.scene, {options.assets, options.seed, options.environment});
+    Result<std::unique_ptr<DemoScene>> scene =
+        loadScene(options.scene, {options.assets, options.seed, options.environment});
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
     Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(device, *show.scene, extractScene(show.scene->world, show.scene->assets), {.extent = extent});
+        Renderer::create(device, *show.scene, extractScene(show.scene->world, show.scene->assets),
+                         {.extent = extent});
     if (!renderer)
         return renderer.error();
     show.renderer = std::move(*renderer);
@@ -152,7 +164,9 @@ public:
         const double seconds = std::chrono::duration<double>(Clock::now() - m_start).count();
         if (seconds < 0.5)
             return;
-        glfwSetWindowTitle(window, fmt::format("Penumbra - {} - {} - {:.0f} fps", scene, kernelName(kernel), m_frames / seconds).c_str());
+        glfwSetWindowTitle(window, fmt::format("Penumbra - {} - {} - {:.0f} fps", scene,
+                                               kernelName(kernel), m_frames / seconds)
+                                       .c_str());
         m_frames = 0;
         m_start = Clock::now();
     }
@@ -175,15 +189,17 @@ Result<void> runWindow(const DemoOptions& options)
 
     std::uint32_t extensionCount = 0;
     const char** extensions = glfwGetRequiredInstanceExtensions(&extensionCount);
-    Result<Instance> instance = createInstance({.applicationName = "penumbra-demo",
-                                                .extensions = {extensions, extensions + extensionCount},
-                                                .validation = options.validate});
+    Result<Instance> instance =
+        createInstance({.applicationName = "penumbra-demo",
+                        .extensions = {extensions, extensions + extensionCount},
+                        .validation = options.validate});
     if (!instance)
         return instance.error();
     Surface surface{instance->handle};
     if (glfwCreateWindowSurface(instance->handle, window, nullptr, &surface.handle) != VK_SUCCESS)
         return Error{"Vulkan cannot draw to this display; add --headless to render to files"};
-    Result<Device> device = createDevice(*instance, {.choice = options.device, .surface = surface.handle});
+    Result<Device> device =
+        createDevice(*instance, {.choice = options.device, .surface = surface.handle});
     if (!device)
         return device.error();
     Result<Show> show = makeShow(*device, options, framebufferExtent(window));
@@ -198,11 +214,14 @@ Result<void> runWindow(const DemoOptions& options)
     glfwSetCursorPosCallback(window, onCursor);
     glfwSetScrollCallback(window, onScroll);
     glfwSetKeyCallback(window, onKey);
-    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: kernel, Esc: quit\n");
+    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
+               "kernel, Esc: quit\n");
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();
-    for (std::uint32_t frames = 0; !glfwWindowShouldClose(window) && (options.frames == 0 || frames < options.frames); ++frames) {
+    for (std::uint32_t frames = 0;
+         !glfwWindowShouldClose(window) && (options.frames == 0 || frames < options.frames);
+         ++frames) {
         glfwPollEvents();
         const VkExtent2D extent = framebufferExtent(window);
         if (extent.width == 0 || extent.height == 0) { // minimised
@@ -227,10 +246,12 @@ Result<void> runWindow(const DemoOptions& options)
         last = now;
         if (!controls.paused)
             for (const ChangedInstance& changed : show->simulation->advance(seconds))
-                renderer.scene().setInstance(changed.index, moved(renderer.scene().data(), changed));
+                renderer.scene().setInstance(changed.index,
+                                             moved(renderer.scene().data(), changed));
 
         const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
-        Result<GpuFrame> frame = renderer.beginFrame(viewOf(controls.camera, aspect), controls.kernel);
+        Result<GpuFrame> frame =
+            renderer.beginFrame(viewOf(controls.camera, aspect), controls.kernel);
         if (!frame)
             return frame.error();
         Result<bool> visible = swapchain->acquire(frame->slot, extent);
@@ -238,7 +259,8 @@ Result<void> runWindow(const DemoOptions& options)
             return visible.error();
         if (*visible)
             copyToWindow(frame->cmd, renderer.display(), *swapchain);
-        if (Result<void> ended = renderer.endFrame(swapchain->waits(), swapchain->signals()); !ended)
+        if (Result<void> ended = renderer.endFrame(swapchain->waits(), swapchain->signals());
+            !ended)
             return ended;
         if (Result<void> shown = swapchain->present(); !shown)
             return shown;

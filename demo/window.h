@@ -6,7 +6,8 @@
 
 namespace penumbra {
 
-// Until the window closes or options.frames are drawn. Error: no display, no device, a scene that does not load.
+// Until the window closes or options.frames are drawn. Error: no display, no device, a scene that
+// does not load.
 Result<void> runWindow(const DemoOptions& options);
 
 } // namespace penumbra

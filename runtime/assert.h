@@ -1,6 +1,7 @@
-// PENUMBRA_ASSERT(condition, format, …): a broken promise between our own functions, that is, a bug. Prints the
-// condition, the place and the values, then ends the process with exit code 3. Checked in release builds too; code
-// too hot for that uses PENUMBRA_DEBUG_ASSERT. Never for bad input: see runtime/result.h.
+// PENUMBRA_ASSERT(condition, format, …): a broken promise between our own functions, that is, a
+// bug. Prints the condition, the place and the values, then ends the process with exit code 3.
+// Checked in release builds too; code too hot for that uses PENUMBRA_DEBUG_ASSERT. Never for bad
+// input: see runtime/result.h.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,7 +9,8 @@
 
 namespace penumbra {
 
-[[noreturn]] void failAssert(const char* condition, const char* file, int line, const std::string& message);
+[[noreturn]] void failAssert(const char* condition, const char* file, int line,
+                             const std::string& message);
 
 } // namespace penumbra
 

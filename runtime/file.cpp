@@ -39,7 +39,8 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::
         return Error{path.string() + ": not a regular file"};
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (size > maxBytes)
-        return Error{fmt::format("{}: {} bytes, larger than the limit of {} bytes", path.string(), size, maxBytes)};
+        return Error{fmt::format("{}: {} bytes, larger than the limit of {} bytes", path.string(),
+                                 size, maxBytes)};
 
     std::vector<std::byte> bytes(size);
     std::size_t done = 0;
@@ -62,7 +63,8 @@ Result<void> writeFile(const std::filesystem::path& path, std::span<const std::b
     if (path.has_parent_path())
         std::filesystem::create_directories(path.parent_path(), ec);
     if (ec)
-        return Error{fmt::format("{}: cannot create the folder: {}", path.parent_path().string(), ec.message())};
+        return Error{fmt::format("{}: cannot create the folder: {}", path.parent_path().string(),
+                                 ec.message())};
 
     std::string temporary = path.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};

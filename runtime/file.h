@@ -12,7 +12,8 @@
 
 namespace penumbra {
 
-// The bytes of a regular file of at most `maxBytes`. A folder, a missing file or a larger one is an Error.
+// The bytes of a regular file of at most `maxBytes`. A folder, a missing file or a larger one is an
+// Error.
 Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes);
 
 // Writes to a temporary name in the same folder and renames it over `path`; creates the folder.

@@ -1,5 +1,6 @@
-// Result<T>: a value, or an Error that says what is wrong, where, and what to do. The way that input from outside
-// (files, devices, command lines) fails; a bug is PENUMBRA_ASSERT. No exception crosses a module's border.
+// Result<T>: a value, or an Error that says what is wrong, where, and what to do. The way that
+// input from outside (files, devices, command lines) fails; a bug is PENUMBRA_ASSERT. No exception
+// crosses a module's border.
 //   Result<Mesh> mesh = readObj(path);
 //   if (!mesh) return mesh.error();
 //   use(*mesh);

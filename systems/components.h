@@ -1,4 +1,5 @@
-// Components of a scene. Their names and fields are what scene files hold. Data only: systems/*.h say what happens to them.
+// Components of a scene. Their names and fields are what scene files hold. Data only: systems/*.h
+// say what happens to them.
 #pragma once
 
 #include "assets/asset_store.h"
@@ -9,14 +10,14 @@
 
 namespace penumbra {
 
-// Where the entity is: rotation, then uniform scale, then translation, to world space (to the parent's with Parent).
-// Written by: spawn, physics, articulation.  Read by: transforms, gather.
+// Where the entity is: rotation, then uniform scale, then translation, to world space (to the
+// parent's with Parent). Written by: spawn, physics, articulation.  Read by: transforms, gather.
 struct Transform {
     static constexpr std::string_view kName = "Transform";
     static constexpr bool kRowChanges = true; // few objects move: gather reads only those
-    vec3 position{0};        // metres
-    float scale = 1;         // > 0
-    vec4 rotation{0, 0, 0, 1}; // unit quaternion x, y, z, w
+    vec3 position{0};                         // metres
+    float scale = 1;                          // > 0
+    vec4 rotation{0, 0, 0, 1};                // unit quaternion x, y, z, w
 };
 static_assert(sizeof(Transform) == 32 && std::is_trivially_copyable_v<Transform>);
 
@@ -26,7 +27,8 @@ struct MeshInstance {
     AssetHandle asset;
 };
 
-// How the surface reflects; without it, the asset's own material.  Written by: spawn, editor.  Read by: gather.
+// How the surface reflects; without it, the asset's own material.  Written by: spawn, editor.  Read
+// by: gather.
 struct Material {
     static constexpr std::string_view kName = "Material";
     vec3 albedo{0.8f};       // linear Rec. 709
@@ -34,8 +36,8 @@ struct Material {
     float glossExponent = 0; // Phong exponent, >= 0
 };
 
-// The entity blocks light by the field of this asset, scaled and turned as the entity.  Written by: spawn.
-// Read by: scene build.
+// The entity blocks light by the field of this asset, scaled and turned as the entity.  Written by:
+// spawn. Read by: scene build.
 struct ShadowFieldOccluder {
     static constexpr std::string_view kName = "ShadowFieldOccluder";
     AssetHandle asset;
@@ -50,10 +52,10 @@ struct RigidBody {
 // What the picture is seen from.  Written by: spawn, input.  Read by: frame.
 struct Camera {
     static constexpr std::string_view kName = "Camera";
-    vec3 target{0};             // world, metres
-    float distance = 5;         // of the eye from the target, metres
+    vec3 target{0};              // world, metres
+    float distance = 5;          // of the eye from the target, metres
     float yaw = 0, pitch = 0.4f; // radians; pitch > 0 looks down
-    float fieldOfView = 0.7f;   // vertical, radians
+    float fieldOfView = 0.7f;    // vertical, radians
     float near = 0.05f, far = 100;
 };
 

@@ -15,7 +15,8 @@ SceneData extractScene(ecs::World& world, const AssetStore& assets)
             instance.rotation = transform.rotation;
             instance.material = assets.mesh(mesh.asset).material;
             if (const Material* material = world.tryGet<const Material>(entity))
-                instance.material = {material->albedo, material->glossFraction, material->glossExponent};
+                instance.material = {material->albedo, material->glossFraction,
+                                     material->glossExponent};
             instance.occluder = world.has<ShadowFieldOccluder>(entity);
             instances.push_back(instance);
             entities.push_back(entity);

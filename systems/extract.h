@@ -14,8 +14,9 @@ struct RenderInstance {
     std::uint32_t index = 0;
 };
 
-// Gives every entity with Transform and MeshInstance an instance, in the order of the query, and packs the scene. Mesh
-// index = asset handle. The entity blocks light if it has a ShadowFieldOccluder.
+// Gives every entity with Transform and MeshInstance an instance, in the order of the query, and
+// packs the scene. Mesh index = asset handle. The entity blocks light if it has a
+// ShadowFieldOccluder.
 SceneData extractScene(ecs::World& world, const AssetStore& assets);
 
 // An instance that moved since the system's last run.

@@ -14,8 +14,8 @@ constexpr VkFormat kRadianceFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr VkFormat kDisplayFormat = VK_FORMAT_R8G8B8A8_UNORM;
 
-// Receivers per invocation of combine_exact. An occluder's constants are loaded once for all of them, which decides on
-// lavapipe (findings section 1, kernel J); a GPU has registers for two.
+// Receivers per invocation of combine_exact. An occluder's constants are loaded once for all of
+// them, which decides on lavapipe (findings section 1, kernel J); a GPU has registers for two.
 std::uint32_t receiversPerInvocation(const Device& device)
 {
     return device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 4 : 2;
@@ -29,13 +29,12 @@ void beginRendering(VkCommandBuffer cmd, const FrameTargets& targets)
         .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
         .loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE, // pass background fills what pass raster leaves
         .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
-    const VkRenderingAttachmentInfo depth{
-        .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-        .imageView = targets.depth.view,
-        .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-        .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
-        .clearValue = {.depthStencil = {.depth = 1}}};
+    const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                          .imageView = targets.depth.view,
+                                          .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                          .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                          .storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                                          .clearValue = {.depthStencil = {.depth = 1}}};
     const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                .renderArea = {.extent = targets.radiance.extent},
                                .layerCount = 1,
@@ -52,7 +51,8 @@ void dispatchCovering(VkCommandBuffer cmd, std::uint32_t items, std::uint32_t gr
 }
 
 // Moved instances -> the constants that every receiver reads.
-void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, std::uint32_t changed)
+void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
+                          std::uint32_t changed)
 {
     const GpuZone zone(gpu.cmd, "instance_update");
     bindAndPush(gpu.cmd, passes.instanceUpdate, scene.set(gpu.slot), changed);
@@ -61,8 +61,9 @@ void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const 
 
 } // namespace
 
-void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene, const FrameConstants& constants,
-                 const FrameOptions& options, const FrameTargets& targets)
+void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene,
+                 const FrameConstants& constants, const FrameOptions& options,
+                 const FrameTargets& targets)
 {
     FrameConstants frame = constants;
     frame.denseRotations = options.kernel == Kernel::Literal ? 1 : 0;
@@ -101,18 +102,23 @@ void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const Gpu
     computeToIndirect(gpu.cmd);
 }
 
-void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, Kernel kernel)
+void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
+                   Kernel kernel)
 {
     const GpuZone zone(gpu.cmd, "combine");
     bind(gpu.cmd, passes.combine(kernel), scene.set(gpu.slot), nullptr, 0);
-    vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle, offsetof(CullResult, combineGroups));
+    vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle,
+                          offsetof(CullResult, combineGroups));
 }
 
-void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, const FrameTargets& targets)
+void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
+                  const FrameTargets& targets)
 {
     const GpuZone zone(gpu.cmd, "raster");
-    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage, kColorTarget);
-    transitionImage(gpu.cmd, targets.depth.handle, targets.depth.aspect, kUndefinedImage, kDepthTarget);
+    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage,
+                    kColorTarget);
+    transitionImage(gpu.cmd, targets.depth.handle, targets.depth.aspect, kUndefinedImage,
+                    kDepthTarget);
     const GpuSceneBuffers& b = scene.buffers();
     beginRendering(gpu.cmd, targets);
     bind(gpu.cmd, passes.raster, scene.set(gpu.slot), nullptr, 0);
@@ -123,22 +129,27 @@ void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene
         const VkDeviceSize offsets[] = {mesh.firstReceiver * sizeof(ReceiverTexels),
                                         scene.data().firstRadiance[i] * sizeof(vec4), 0};
         vkCmdBindVertexBuffers(gpu.cmd, 0, 3, buffers, offsets);
-        vkCmdDrawIndexedIndirect(gpu.cmd, b.drawCommands.handle, i * sizeof(VkDrawIndexedIndirectCommand), 1, 0);
+        vkCmdDrawIndexedIndirect(gpu.cmd, b.drawCommands.handle,
+                                 i * sizeof(VkDrawIndexedIndirectCommand), 1, 0);
     }
     bind(gpu.cmd, passes.background, scene.set(gpu.slot), nullptr, 0);
     vkCmdDraw(gpu.cmd, 3, 1, 0, 0);
     vkCmdEndRendering(gpu.cmd);
-    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kColorTarget, kShaderRead);
+    transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kColorTarget,
+                    kShaderRead);
 }
 
-void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets, float exposure)
+void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets,
+                float exposure)
 {
     const GpuZone zone(gpu.cmd, "post");
-    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kUndefinedImage, kStorageImage);
+    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kUndefinedImage,
+                    kStorageImage);
     bindAndPush(gpu.cmd, passes.post, targets.postSet, exposure);
     const VkExtent2D extent = targets.display.extent;
     vkCmdDispatch(gpu.cmd, groupCount(extent.width, 8), groupCount(extent.height, 8), 1);
-    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kStorageImage, kCopySource);
+    transitionImage(gpu.cmd, targets.display.handle, targets.display.aspect, kStorageImage,
+                    kCopySource);
 }
 
 Result<FramePasses> createFramePasses(const Device& device)
@@ -167,30 +178,35 @@ Result<FramePasses> createFramePasses(const Device& device)
             failed = made.error();
     };
 
-    compute(passes.instanceUpdate, {.shader = "instance_update.comp", .bindings = scene, .pushBytes = 4});
+    compute(passes.instanceUpdate,
+            {.shader = "instance_update.comp", .bindings = scene, .pushBytes = 4});
     compute(passes.clusterCull, {.shader = "cluster_cull.comp", .bindings = scene});
     compute(passes.entitySort, {.shader = "entity_sort.comp", .bindings = scene});
-    compute(passes.combineLiteral, {.shader = "combine_literal.comp", .bindings = scene, .constants = {0, 0, selfScale}});
-    compute(passes.combineExact, {.shader = "combine_exact.comp",
-                                  .bindings = scene,
-                                  .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale}});
+    compute(passes.combineLiteral,
+            {.shader = "combine_literal.comp", .bindings = scene, .constants = {0, 0, selfScale}});
+    compute(passes.combineExact,
+            {.shader = "combine_exact.comp",
+             .bindings = scene,
+             .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale}});
     compute(passes.post, {.shader = "post.comp",
-                          .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER}, {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
+                          .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
+                                       {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
                           .pushBytes = 4});
     constexpr auto kPerInstance = VK_VERTEX_INPUT_RATE_INSTANCE;
     constexpr auto kVec4 = VK_FORMAT_R32G32B32A32_SFLOAT;
     constexpr std::uint32_t kRow0 = offsetof(GpuInstance, worldFromObject0);
-    graphics(passes.raster, {.name = "raster",
-                             .vertexShader = "raster.vert",
-                             .fragmentShader = "raster.frag",
-                             .vertexBindings = {{0, sizeof(ReceiverTexels), VK_VERTEX_INPUT_RATE_VERTEX},
-                                                {1, sizeof(vec4), VK_VERTEX_INPUT_RATE_VERTEX},
-                                                {2, sizeof(GpuInstance), kPerInstance}},
-                             .vertexAttributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
-                                                  {1, 1, kVec4, 0},
-                                                  {2, 2, kVec4, kRow0},
-                                                  {3, 2, kVec4, kRow0 + 16},
-                                                  {4, 2, kVec4, kRow0 + 32}}});
+    graphics(passes.raster,
+             {.name = "raster",
+              .vertexShader = "raster.vert",
+              .fragmentShader = "raster.frag",
+              .vertexBindings = {{0, sizeof(ReceiverTexels), VK_VERTEX_INPUT_RATE_VERTEX},
+                                 {1, sizeof(vec4), VK_VERTEX_INPUT_RATE_VERTEX},
+                                 {2, sizeof(GpuInstance), kPerInstance}},
+              .vertexAttributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                                   {1, 1, kVec4, 0},
+                                   {2, 2, kVec4, kRow0},
+                                   {3, 2, kVec4, kRow0 + 16},
+                                   {4, 2, kVec4, kRow0 + 32}}});
     graphics(passes.background, {.name = "background",
                                  .vertexShader = "background.vert",
                                  .fragmentShader = "background.frag",
@@ -201,7 +217,8 @@ Result<FramePasses> createFramePasses(const Device& device)
     return passes;
 }
 
-Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses& passes, VkExtent2D extent)
+Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses& passes,
+                                        VkExtent2D extent)
 {
     FrameTargets targets;
     const struct {
@@ -210,17 +227,20 @@ Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses&
         VkFormat format;
         VkImageUsageFlags usage;
     } images[] = {
-        {targets.radiance, "radiance image", kRadianceFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+        {targets.radiance, "radiance image", kRadianceFormat,
+         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
         {targets.depth, "depth image", kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
         {targets.display, "display image", kDisplayFormat, VK_IMAGE_USAGE_STORAGE_BIT},
     };
     for (const auto& [image, name, format, usage] : images) {
-        Result<Image> made = createImage(device, {.name = name, .extent = extent, .format = format, .usage = usage});
+        Result<Image> made =
+            createImage(device, {.name = name, .extent = extent, .format = format, .usage = usage});
         if (!made)
             return made.error();
         image = std::move(*made);
     }
-    targets.sampler = createSampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    targets.sampler =
+        createSampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     targets.sets = DescriptorSets(device);
     targets.postSet = targets.sets.allocate(passes.post.setLayout);
     DescriptorWriter(device, targets.postSet)

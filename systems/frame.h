@@ -1,5 +1,6 @@
-// One frame on the GPU. frame.cpp lists its passes and barriers in order; it records into the command buffer of whoever
-// owns the frame (our ring or a host's) and leaves the picture in `display`.
+// One frame on the GPU. frame.cpp lists its passes and barriers in order; it records into the
+// command buffer of whoever owns the frame (our ring or a host's) and leaves the picture in
+// `display`.
 #pragma once
 
 #include "runtime/vk/frame_ring.h"
@@ -12,7 +13,8 @@ namespace penumbra {
 
 // Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
 struct FramePasses {
-    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, raster, background, post;
+    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, raster,
+        background, post;
     [[nodiscard]] const Pipeline& combine(Kernel kernel) const
     {
         return kernel == Kernel::Literal ? combineLiteral : combineExact;
@@ -24,27 +26,32 @@ Result<FramePasses> createFramePasses(const Device& device);
 struct FrameTargets {
     Image radiance; // RGBA16F, linear
     Image depth;
-    Image display;  // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+    Image display; // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
     UniqueSampler sampler;
     VkDescriptorSet postSet = VK_NULL_HANDLE;
     DescriptorSets sets;
 };
-Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses& passes, VkExtent2D extent);
+Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses& passes,
+                                        VkExtent2D extent);
 
 struct FrameOptions {
     Kernel kernel = Kernel::Exact;
-    bool combine = true;   // false: the radiance buffer is given from outside (reference, cpu-scalar)
+    bool combine = true; // false: the radiance buffer is given from outside (reference, cpu-scalar)
     float exposure = 1;
 };
 
 // Records everything from changed instances to `targets.display`.
-void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene, const FrameConstants& constants,
-                 const FrameOptions& options, const FrameTargets& targets);
+void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene,
+                 const FrameConstants& constants, const FrameOptions& options,
+                 const FrameTargets& targets);
 
 // The parts. Each takes and leaves the targets as the next one wants them.
 void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
-void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, Kernel kernel);
-void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene, const FrameTargets& targets);
-void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets, float exposure);
+void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
+                   Kernel kernel);
+void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
+                  const FrameTargets& targets);
+void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets,
+                float exposure);
 
 } // namespace penumbra

@@ -13,8 +13,9 @@ View viewOf(const Camera& camera, float aspect)
                     std::cos(camera.pitch) * std::cos(camera.yaw));
     View view;
     view.eye = camera.target + camera.distance * back;
-    view.clipFromWorld = glm::perspectiveRH_ZO(camera.fieldOfView, aspect, camera.near, camera.far) *
-                         glm::lookAtRH(view.eye, camera.target, vec3(0, 1, 0));
+    view.clipFromWorld =
+        glm::perspectiveRH_ZO(camera.fieldOfView, aspect, camera.near, camera.far) *
+        glm::lookAtRH(view.eye, camera.target, vec3(0, 1, 0));
     return view;
 }
 
@@ -29,9 +30,12 @@ LightSh environmentLight(const Environment& environment, float intensity)
 Environment aboveGround(const Environment& environment)
 {
     std::vector<vec3> map = environment.map;
-    const std::size_t firstBelow = (environment.mapHeight + 1) / 2; // row whose centre looks below the horizon
-    std::fill(map.begin() + static_cast<std::ptrdiff_t>(firstBelow * environment.mapWidth), map.end(), vec3(0));
-    Environment clipped = makeEnvironment(environment.mapWidth, environment.mapHeight, std::move(map));
+    const std::size_t firstBelow =
+        (environment.mapHeight + 1) / 2; // row whose centre looks below the horizon
+    std::fill(map.begin() + static_cast<std::ptrdiff_t>(firstBelow * environment.mapWidth),
+              map.end(), vec3(0));
+    Environment clipped =
+        makeEnvironment(environment.mapWidth, environment.mapHeight, std::move(map));
     clipped.statistics = environment.statistics;
     return clipped;
 }
@@ -44,7 +48,8 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     frame.eye = vec4(view.eye, 1);
     frame.backgroundIntensity = backgroundIntensity;
 
-    // Planes from the rows of the matrix (Gribb and Hartmann 2001), normalised so that distances are metres.
+    // Planes from the rows of the matrix (Gribb and Hartmann 2001), normalised so that distances
+    // are metres.
     const mat4 rows = glm::transpose(view.clipFromWorld);
     const vec4 planes[6] = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
                             rows[3] - rows[1], rows[2],           rows[3] - rows[2]};

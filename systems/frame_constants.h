@@ -14,13 +14,14 @@ struct View {
 
 View viewOf(const Camera& camera, float aspect);
 
-// Radiance in SH of order 6, times an intensity. Kernel literal takes the first 16, the papers' order 4; kernel exact all,
-// at its nodes.
+// Radiance in SH of order 6, times an intensity. Kernel literal takes the first 16, the papers'
+// order 4; kernel exact all, at its nodes.
 using LightSh = std::array<vec3, 36>;
 LightSh environmentLight(const Environment& environment, float intensity);
 
-// The environment above solid, dark ground at y = 0: map and SH without the directions below the horizon. The product of
-// the ground's occlusion and the light is so computed once, exactly, for all receivers above the plane.
+// The environment above solid, dark ground at y = 0: map and SH without the directions below the
+// horizon. The product of the ground's occlusion and the light is so computed once, exactly, for
+// all receivers above the plane.
 Environment aboveGround(const Environment& environment);
 
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity);

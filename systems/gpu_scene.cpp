@@ -18,9 +18,25 @@ constexpr VkBufferUsageFlags kTexelUse = kStorageUse | VK_BUFFER_USAGE_UNIFORM_T
 
 constexpr Binding kBindings[] = {
     {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, kStages},
-    {1, kStorage}, {2, kStorage}, {3, kStorage}, {4, kStorage}, {5, kTexels}, {6, kTexels}, {7, kTexels},
-    {8, kStorage}, {9, kStorage}, {10, kStorage}, {11, kStorage}, {12, kTexels}, {13, kStorage}, {14, kTexels},
-    {15, kStorage}, {16, kStorage}, {17, kStorage}, {18, kStorage}, {19, kStorage},
+    {1, kStorage},
+    {2, kStorage},
+    {3, kStorage},
+    {4, kStorage},
+    {5, kTexels},
+    {6, kTexels},
+    {7, kTexels},
+    {8, kStorage},
+    {9, kStorage},
+    {10, kStorage},
+    {11, kStorage},
+    {12, kTexels},
+    {13, kStorage},
+    {14, kTexels},
+    {15, kStorage},
+    {16, kStorage},
+    {17, kStorage},
+    {18, kStorage},
+    {19, kStorage},
     {20, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
 };
 
@@ -35,7 +51,8 @@ struct Maker {
             return {};
         if (desc.bytes == 0)
             desc.bytes = bytes.size();
-        Result<Buffer> buffer = bytes.empty() ? createBuffer(device, desc) : createBufferWith(device, desc, bytes);
+        Result<Buffer> buffer =
+            bytes.empty() ? createBuffer(device, desc) : createBufferWith(device, desc, bytes);
         if (!buffer) {
             result = buffer.error();
             return {};
@@ -44,19 +61,23 @@ struct Maker {
     }
 
     template <class T>
-    Buffer with(const char* name, const std::vector<T>& values, VkBufferUsageFlags usage, VkFormat texels = VK_FORMAT_UNDEFINED)
+    Buffer with(const char* name, const std::vector<T>& values, VkBufferUsageFlags usage,
+                VkFormat texels = VK_FORMAT_UNDEFINED)
     {
-        return make({.name = name, .usage = usage, .texelFormat = texels}, std::as_bytes(std::span(values)));
+        return make({.name = name, .usage = usage, .texelFormat = texels},
+                    std::as_bytes(std::span(values)));
     }
 
-    Buffer empty(const char* name, VkDeviceSize bytes, VkBufferUsageFlags usage, VkFormat texels = VK_FORMAT_UNDEFINED)
+    Buffer empty(const char* name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                 VkFormat texels = VK_FORMAT_UNDEFINED)
     {
         return make({.name = name, .bytes = bytes, .usage = usage, .texelFormat = texels}, {});
     }
 
     Buffer upload(const char* name, VkDeviceSize bytes, VkBufferUsageFlags usage)
     {
-        return make({.name = name, .bytes = bytes, .usage = usage, .memory = MemoryKind::Upload}, {});
+        return make({.name = name, .bytes = bytes, .usage = usage, .memory = MemoryKind::Upload},
+                    {});
     }
 };
 
@@ -65,8 +86,8 @@ std::vector<VkDrawIndexedIndirectCommand> drawTemplate(const SceneData& scene)
     std::vector<VkDrawIndexedIndirectCommand> commands;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
-        // instanceCount 0: pass cluster_cull sets it to 1 where a cluster is visible. The vertex offset is in the
-        // bindings, since positions and radiance start at different vertices.
+        // instanceCount 0: pass cluster_cull sets it to 1 where a cluster is visible. The vertex
+        // offset is in the bindings, since positions and radiance start at different vertices.
         commands.push_back({mesh.indexCount, 0, mesh.firstIndex, 0, i});
     }
     return commands;
@@ -74,54 +95,72 @@ std::vector<VkDrawIndexedIndirectCommand> drawTemplate(const SceneData& scene)
 
 Result<Image> uploadMap(const Device& device, const Environment& environment)
 {
-    Result<Image> image = createImage(device, {.name = "environment map",
-                                               .extent = {environment.mapWidth, environment.mapHeight},
-                                               .format = VK_FORMAT_R16G16B16A16_SFLOAT,
-                                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+    Result<Image> image =
+        createImage(device, {.name = "environment map",
+                             .extent = {environment.mapWidth, environment.mapHeight},
+                             .format = VK_FORMAT_R16G16B16A16_SFLOAT,
+                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
     if (!image)
         return image;
     std::vector<std::uint64_t> pixels;
     for (const vec3& radiance : environment.map)
         pixels.push_back(glm::packHalf4x16(vec4(radiance, 1)));
-    if (Result<void> done = penumbra::upload(device, *image, std::as_bytes(std::span(pixels)), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL); !done)
+    if (Result<void> done = penumbra::upload(device, *image, std::as_bytes(std::span(pixels)),
+                                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        !done)
         return done.error();
     return image;
 }
 
 } // namespace
 
-std::span<const Binding> sceneBindings() { return kBindings; }
-
-Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Environment& environment,
-                                  std::uint32_t framesInFlight)
+std::span<const Binding> sceneBindings()
 {
-    PENUMBRA_ASSERT(!data.instances.empty() && !data.clusters.empty(), "a scene has at least one instance");
+    return kBindings;
+}
+
+Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
+                                  const Environment& environment, std::uint32_t framesInFlight)
+{
+    PENUMBRA_ASSERT(!data.instances.empty() && !data.clusters.empty(),
+                    "a scene has at least one instance");
     GpuScene scene;
     const std::uint64_t instances = data.instances.size(), clusters = data.clusters.size();
 
     Maker maker{device};
     GpuSceneBuffers& b = scene.m_buffers;
     b.fields = maker.with("fields", data.fields, kStorageUse);
-    b.fieldSamples = maker.with("field samples", data.fieldSamples, kTexelUse, VK_FORMAT_R32G32B32A32_UINT);
-    b.receivers = maker.with("receivers", data.receivers, kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, VK_FORMAT_R32G32B32A32_UINT);
+    b.fieldSamples =
+        maker.with("field samples", data.fieldSamples, kTexelUse, VK_FORMAT_R32G32B32A32_UINT);
+    b.receivers =
+        maker.with("receivers", data.receivers, kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
+                   VK_FORMAT_R32G32B32A32_UINT);
     b.indices = maker.with("indices", data.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     b.bounds = maker.with("cluster bounds", data.bounds, kStorageUse);
     b.clusters = maker.with("clusters", data.clusters, kStorageUse);
-    b.instances = maker.empty("instances", instances * sizeof(GpuInstance), kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
-                              VK_FORMAT_R32G32B32A32_SFLOAT);
-    b.cull = maker.empty("cull result", sizeof(CullResult), kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    b.instances =
+        maker.empty("instances", instances * sizeof(GpuInstance),
+                    kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, VK_FORMAT_R32G32B32A32_SFLOAT);
+    b.cull = maker.empty("cull result", sizeof(CullResult),
+                         kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     b.visible = maker.empty("visible clusters", clusters * 4, kTexelUse, VK_FORMAT_R32_UINT);
-    b.lists = maker.empty("occluder lists", clusters * (1 + kMaxClusterOccluders) * 4, kTexelUse, VK_FORMAT_R32_UINT);
-    // Zeroed: a vertex of a culled cluster is read by the rasteriser for triangles that it then drops.
-    b.radiance = maker.with("radiance", std::vector<vec4>(data.radianceCount), kStorageUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    b.lists = maker.empty("occluder lists", clusters * (1 + kMaxClusterOccluders) * 4, kTexelUse,
+                          VK_FORMAT_R32_UINT);
+    // Zeroed: a vertex of a culled cluster is read by the rasteriser for triangles that it then
+    // drops.
+    b.radiance = maker.with("radiance", std::vector<vec4>(data.radianceCount),
+                            kStorageUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     b.drawTemplate = maker.with("draw template", drawTemplate(data), kStorageUse);
     b.drawCommands = maker.empty("draw commands", instances * sizeof(VkDrawIndexedIndirectCommand),
                                  kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    b.denseRotations = maker.empty("dense rotations", instances * sizeof(DenseRotation), kStorageUse);
+    b.denseRotations =
+        maker.empty("dense rotations", instances * sizeof(DenseRotation), kStorageUse);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
         GpuSceneSlot slot;
-        slot.frame = maker.upload("frame constants", sizeof(FrameConstants), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-        slot.inputs = maker.upload("instance inputs", instances * sizeof(InstanceInput), kStorageUse);
+        slot.frame = maker.upload("frame constants", sizeof(FrameConstants),
+                                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+        slot.inputs =
+            maker.upload("instance inputs", instances * sizeof(InstanceInput), kStorageUse);
         slot.changed = maker.upload("changed instances", instances * 4, kStorageUse);
         scene.m_slots.push_back(std::move(slot));
     }
@@ -169,7 +208,8 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const En
 
 void GpuScene::setInstance(std::uint32_t index, const SceneInstance& instance)
 {
-    PENUMBRA_ASSERT(index < m_data.instances.size() && instance.mesh == m_data.instances[index].mesh,
+    PENUMBRA_ASSERT(index < m_data.instances.size() &&
+                        instance.mesh == m_data.instances[index].mesh,
                     "instance {} of {} keeps its mesh", index, m_data.instances.size());
     m_data.instances[index] = instance;
     if (!m_isChanged[index])

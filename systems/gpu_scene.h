@@ -1,5 +1,6 @@
-// The GPU's copy of a scene: static arrays per asset, what the passes pass on, and the descriptor set that all of them
-// share (bindings: shaders/scene.glsl). The frame updates only instances that changed.
+// The GPU's copy of a scene: static arrays per asset, what the passes pass on, and the descriptor
+// set that all of them share (bindings: shaders/scene.glsl). The frame updates only instances that
+// changed.
 #pragma once
 
 #include "assets/environment.h"
@@ -34,14 +35,16 @@ struct GpuSceneSlot {
 
 class GpuScene {
 public:
-    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, or a scene larger than the device's buffers.
-    static Result<GpuScene> create(const Device& device, SceneData data, const Environment& environment,
-                                   std::uint32_t framesInFlight);
+    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, or a scene larger
+    // than the device's buffers.
+    static Result<GpuScene> create(const Device& device, SceneData data,
+                                   const Environment& environment, std::uint32_t framesInFlight);
 
     // The instance moves or changes its material from the next frame on.
     void setInstance(std::uint32_t index, const SceneInstance& instance);
 
-    // Writes what the frame of `slot` reads: constants and changed instances. Returns the number of changed ones.
+    // Writes what the frame of `slot` reads: constants and changed instances. Returns the number of
+    // changed ones.
     std::uint32_t writeFrame(std::uint32_t slot, const FrameConstants& constants);
 
     // All instances count as changed: after another kernel was chosen, which needs other constants.

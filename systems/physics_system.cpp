@@ -10,7 +10,8 @@ void stepPhysics(const ecs::SystemContext& context, PhysicsWorld& physics, float
             const Pose pose = physics.interpolated(body.body);
             Transform moved = old;
             moved.position = pose.position;
-            moved.rotation = vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w);
+            moved.rotation =
+                vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w);
             if (moved.position != old.position || moved.rotation != old.rotation)
                 context.set(entity, moved);
         });

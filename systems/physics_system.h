@@ -7,8 +7,9 @@
 
 namespace penumbra {
 
-// System: steps the physics by `seconds` and writes the Transform of every RigidBody that moved, at the blend of the last
-// two steps. A body at rest keeps its Transform untouched, so nothing downstream runs for it.
+// System: steps the physics by `seconds` and writes the Transform of every RigidBody that moved, at
+// the blend of the last two steps. A body at rest keeps its Transform untouched, so nothing
+// downstream runs for it.
 void stepPhysics(const ecs::SystemContext& context, PhysicsWorld& physics, float seconds);
 
 } // namespace penumbra

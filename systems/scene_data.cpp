@@ -7,7 +7,8 @@ namespace penumbra {
 
 namespace {
 
-void appendReceivers(const MeshAsset& mesh, MeshRange& range, std::vector<ReceiverTexels>& receivers)
+void appendReceivers(const MeshAsset& mesh, MeshRange& range,
+                     std::vector<ReceiverTexels>& receivers)
 {
     range.firstReceiver = static_cast<std::uint32_t>(receivers.size());
     range.vertexCount = static_cast<std::uint32_t>(mesh.positions.size());
@@ -19,20 +20,23 @@ void appendReceivers(const MeshAsset& mesh, MeshRange& range, std::vector<Receiv
         const vec3 p = mesh.positions[v];
         texels.geometry = uvec4(floatBitsToUint(p.x), floatBitsToUint(p.y), floatBitsToUint(p.z),
                                 packNormal(mesh.normals[v]));
-        std::memcpy(&texels.selfVisibility, mesh.selfVisibility[v].data(), sizeof(texels.selfVisibility));
+        std::memcpy(&texels.selfVisibility, mesh.selfVisibility[v].data(),
+                    sizeof(texels.selfVisibility));
         receivers.push_back(texels);
     }
 }
 
-// Kernels step through a cell of 2 x 2 x 2 nodes with fixed strides, so all shells get the side of the largest: a
-// coarser shell is refined by bilinear interpolation, which is what a reader of the coarse shell would see.
+// Kernels step through a cell of 2 x 2 x 2 nodes with fixed strides, so all shells get the side of
+// the largest: a coarser shell is refined by bilinear interpolation, which is what a reader of the
+// coarse shell would see.
 void appendField(const ShadowField& field, SceneData& scene)
 {
     const std::uint32_t side = *std::max_element(field.shellSides.begin(), field.shellSides.end());
     FieldInput input{};
     input.center = field.center;
     input.radius = field.radius;
-    input.bandScale = vec4(field.bandScale[0], field.bandScale[1], field.bandScale[2], field.bandScale[3]);
+    input.bandScale =
+        vec4(field.bandScale[0], field.bandScale[1], field.bandScale[2], field.bandScale[3]);
     input.firstSample = static_cast<std::uint32_t>(scene.fieldSamples.size());
     input.side = side;
     input.shells = static_cast<std::uint32_t>(field.shellSides.size());
@@ -69,7 +73,8 @@ void appendField(const ShadowField& field, SceneData& scene)
 
 } // namespace
 
-SceneData buildSceneData(std::span<const MeshAsset* const> meshes, std::vector<SceneInstance> instances)
+SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
+                         std::vector<SceneInstance> instances)
 {
     SceneData scene;
     for (const MeshAsset* mesh : meshes) {
@@ -80,7 +85,8 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes, std::vector<S
         scene.indices.insert(scene.indices.end(), mesh->indices.begin(), mesh->indices.end());
         range.firstBounds = static_cast<std::uint32_t>(scene.bounds.size());
         for (const MeshCluster& cluster : mesh->clusters)
-            scene.bounds.push_back({vec4(cluster.center, cluster.radius), vec4(cluster.coneAxis, cluster.coneCutoff)});
+            scene.bounds.push_back(
+                {vec4(cluster.center, cluster.radius), vec4(cluster.coneAxis, cluster.coneCutoff)});
         if (mesh->field) {
             range.field = static_cast<std::uint32_t>(scene.fields.size());
             appendField(*mesh->field, scene);
@@ -94,8 +100,9 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes, std::vector<S
 
     scene.instances = std::move(instances);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        PENUMBRA_ASSERT(scene.instances[i].mesh < scene.meshes.size(), "instance {} names mesh {} of {}", i,
-                        scene.instances[i].mesh, scene.meshes.size());
+        PENUMBRA_ASSERT(scene.instances[i].mesh < scene.meshes.size(),
+                        "instance {} names mesh {} of {}", i, scene.instances[i].mesh,
+                        scene.meshes.size());
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
         scene.firstRadiance.push_back(scene.radianceCount);
         for (std::uint32_t c = 0; c < mesh.clusterCount; ++c)

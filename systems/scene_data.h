@@ -1,5 +1,6 @@
-// A scene as flat arrays, in the order in which CPU and GPU walk them: what GpuScene uploads and the CPU kernels read.
-// Fields, receivers, triangles and cluster bounds are stored once per asset, whatever the number of instances.
+// A scene as flat arrays, in the order in which CPU and GPU walk them: what GpuScene uploads and
+// the CPU kernels read. Fields, receivers, triangles and cluster bounds are stored once per asset,
+// whatever the number of instances.
 #pragma once
 
 #include "assets/mesh_asset.h"
@@ -12,12 +13,12 @@
 namespace penumbra {
 
 struct SceneInstance {
-    std::uint32_t mesh = 0;    // index of a mesh asset
-    vec3 position{0};          // world, metres
+    std::uint32_t mesh = 0; // index of a mesh asset
+    vec3 position{0};       // world, metres
     float scale = 1;
     vec4 rotation{0, 0, 0, 1}; // quaternion x, y, z, w
     MeshMaterial material;
-    bool occluder = true;      // blocks light, if its asset has a field
+    bool occluder = true; // blocks light, if its asset has a field
 };
 
 // Where an asset lies in the arrays below.
@@ -31,20 +32,23 @@ struct MeshRange {
 
 struct SceneData {
     std::vector<MeshRange> meshes;
-    std::vector<ReceiverTexels> receivers;   // last cluster of a mesh padded with copies of its last vertex
-    std::vector<std::uint32_t> indices;      // relative to the mesh's firstReceiver
+    std::vector<ReceiverTexels>
+        receivers; // last cluster of a mesh padded with copies of its last vertex
+    std::vector<std::uint32_t> indices; // relative to the mesh's firstReceiver
     std::vector<ClusterBounds> bounds;
-    std::vector<FieldInput> fields;          // at least one
-    std::vector<uvec4> fieldSamples;         // one side per field: its largest
+    std::vector<FieldInput> fields;  // at least one
+    std::vector<uvec4> fieldSamples; // one side per field: its largest
 
     std::vector<SceneInstance> instances;
-    std::vector<SceneCluster> clusters;       // [sum over instances of clusterCount]
-    std::vector<std::uint32_t> firstRadiance; // [instanceCount] of the instance's receivers in the radiance buffer
+    std::vector<SceneCluster> clusters; // [sum over instances of clusterCount]
+    std::vector<std::uint32_t>
+        firstRadiance; // [instanceCount] of the instance's receivers in the radiance buffer
     std::uint32_t radianceCount = 0;
     std::uint64_t vertexCount = 0, triangleCount = 0; // of all instances, without padding
 };
 
-SceneData buildSceneData(std::span<const MeshAsset* const> meshes, std::vector<SceneInstance> instances);
+SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
+                         std::vector<SceneInstance> instances);
 
 InstanceInput instanceInput(const SceneData& scene, const SceneInstance& instance);
 

@@ -6,10 +6,12 @@
 #include <cstring>
 #include <limits>
 
-// One copy per instruction set, chosen when the program starts; -ffp-contract=off keeps their bits equal.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) &&               \
-    !defined(__SANITIZE_THREAD__)
-#define PENUMBRA_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+// One copy per instruction set, chosen when the program starts; -ffp-contract=off keeps their bits
+// equal.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define PENUMBRA_CLONES                                                                            \
+    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define PENUMBRA_CLONES
 #endif
@@ -27,24 +29,32 @@ struct Triangle {
 };
 
 // Widens near/far of every pixel whose centre the triangle covers. 8 pixels of a row at a time.
-inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int side, float* near, float* far)
+inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int side, float* near,
+                                                        float* far)
 {
-    const float area = (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
-    const float minX = std::min({t.x[0], t.x[1], t.x[2]}), maxX = std::max({t.x[0], t.x[1], t.x[2]});
-    const float minY = std::min({t.y[0], t.y[1], t.y[2]}), maxY = std::max({t.y[0], t.y[1], t.y[2]});
-    const int x0 = std::max(0, static_cast<int>(std::ceil(minX))), x1 = std::min(side - 1, static_cast<int>(maxX));
-    const int y0 = std::max(0, static_cast<int>(std::ceil(minY))), y1 = std::min(side - 1, static_cast<int>(maxY));
+    const float area =
+        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
+    const float minX = std::min({t.x[0], t.x[1], t.x[2]}),
+                maxX = std::max({t.x[0], t.x[1], t.x[2]});
+    const float minY = std::min({t.y[0], t.y[1], t.y[2]}),
+                maxY = std::max({t.y[0], t.y[1], t.y[2]});
+    const int x0 = std::max(0, static_cast<int>(std::ceil(minX))),
+              x1 = std::min(side - 1, static_cast<int>(maxX));
+    const int y0 = std::max(0, static_cast<int>(std::ceil(minY))),
+              y1 = std::min(side - 1, static_cast<int>(maxY));
     if (x0 > x1 || y0 > y1 || std::abs(area) < 1e-12f)
         return;
 
-    // Barycentric coordinate a_k grows by dx_k per pixel in x and dy_k in y; depth is linear as well.
+    // Barycentric coordinate a_k grows by dx_k per pixel in x and dy_k in y; depth is linear as
+    // well.
     const float invArea = 1 / area;
     float row[3], dx[3], dy[3], depthRow = 0, depthDx = 0, depthDy = 0;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         dx[k] = (t.y[i] - t.y[j]) * invArea;
         dy[k] = (t.x[j] - t.x[i]) * invArea;
-        row[k] = dx[k] * (static_cast<float>(x0) - t.x[i]) + dy[k] * (static_cast<float>(y0) - t.y[i]);
+        row[k] =
+            dx[k] * (static_cast<float>(x0) - t.x[i]) + dy[k] * (static_cast<float>(y0) - t.y[i]);
         depthRow += row[k] * t.z[k];
         depthDx += dx[k] * t.z[k];
         depthDy += dy[k] * t.z[k];
@@ -53,11 +63,14 @@ inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int s
     for (int y = y0; y <= y1; ++y) {
         for (int x = x0; x <= x1; x += kLanes) {
             const Lanes step = lane + static_cast<float>(x - x0);
-            // Only lanes up to x1 count; coverage is inclusive on all edges, so that no line slips between triangles.
+            // Only lanes up to x1 count; coverage is inclusive on all edges, so that no line slips
+            // between triangles.
             const auto covered = (row[0] + step * dx[0] >= 0.0f) & (row[1] + step * dx[1] >= 0.0f) &
-                                 (row[2] + step * dx[2] >= 0.0f) & (step <= static_cast<float>(x1 - x0));
+                                 (row[2] + step * dx[2] >= 0.0f) &
+                                 (step <= static_cast<float>(x1 - x0));
             const Lanes depth = depthRow + step * depthDx;
-            const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+            const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(side) +
+                                      static_cast<std::size_t>(x);
             Lanes nearest, farthest;
             std::memcpy(&nearest, near + pixel, sizeof(Lanes));
             std::memcpy(&farthest, far + pixel, sizeof(Lanes));
@@ -72,13 +85,14 @@ inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int s
     }
 }
 
-PENUMBRA_CLONES void drawTriangles(const float* projected, const std::uint32_t* indices, std::size_t indexCount, int side,
-                                   float* near, float* far)
+PENUMBRA_CLONES void drawTriangles(const float* projected, const std::uint32_t* indices,
+                                   std::size_t indexCount, int side, float* near, float* far)
 {
     for (std::size_t i = 0; i < indexCount; i += 3) {
         Triangle t;
         for (int k = 0; k < 3; ++k) {
-            const float* vertex = projected + 3 * static_cast<std::size_t>(indices[i + static_cast<std::size_t>(k)]);
+            const float* vertex =
+                projected + 3 * static_cast<std::size_t>(indices[i + static_cast<std::size_t>(k)]);
             t.x[k] = vertex[0];
             t.y[k] = vertex[1];
             t.z[k] = vertex[2];
@@ -97,7 +111,8 @@ struct LookUp {
 PENUMBRA_CLONES bool lookUpPoints(const LookUp& l, std::size_t count, std::uint8_t* blocked)
 {
     const float half = 0.5f * l.side;
-    const float nowhere = l.side * l.side; // the pixel that hits nothing; exact in a float for sides up to 4096
+    const float nowhere =
+        l.side * l.side; // the pixel that hits nothing; exact in a float for sides up to 4096
     int any = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const float x = l.x[i], y = l.y[i], z = l.z[i];
@@ -117,18 +132,23 @@ PENUMBRA_CLONES bool lookUpPoints(const LookUp& l, std::size_t count, std::uint8
 
 LineSpace::LineSpace(std::uint32_t side) : m_side(side)
 {
-    PENUMBRA_ASSERT(side % kLanes == 0 && side > 0 && side <= 4096, "raster side {} must be a multiple of 8, at most 4096", side);
-    // The last row's vector may reach over its end, into the line that hits nothing but never covering it.
+    PENUMBRA_ASSERT(side % kLanes == 0 && side > 0 && side <= 4096,
+                    "raster side {} must be a multiple of 8, at most 4096", side);
+    // The last row's vector may reach over its end, into the line that hits nothing but never
+    // covering it.
     const std::size_t pixels = static_cast<std::size_t>(side) * side + kLanes;
     m_near.resize(pixels);
     m_far.resize(pixels);
 }
 
-void LineSpace::rasterise(vec3 w, const PointSet& vertices, const std::vector<std::uint32_t>& indices)
+void LineSpace::rasterise(vec3 w, const PointSet& vertices,
+                          const std::vector<std::uint32_t>& indices)
 {
     // Any frame will do; start from the axis that is least parallel to w.
     const vec3 a = glm::abs(w);
-    const vec3 axis = a.x <= a.y && a.x <= a.z ? vec3(1, 0, 0) : a.y <= a.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    const vec3 axis = a.x <= a.y && a.x <= a.z ? vec3(1, 0, 0)
+                      : a.y <= a.z             ? vec3(0, 1, 0)
+                                               : vec3(0, 0, 1);
     m_w = w;
     m_u = normalize(cross(axis, w));
     m_v = cross(w, m_u);
@@ -143,13 +163,22 @@ void LineSpace::rasterise(vec3 w, const PointSet& vertices, const std::vector<st
         m_projected[3 * i + 1] = dot(p, m_v) * half + half - 0.5f;
         m_projected[3 * i + 2] = dot(p, m_w);
     }
-    drawTriangles(m_projected.data(), indices.data(), indices.size(), static_cast<int>(m_side), m_near.data(), m_far.data());
+    drawTriangles(m_projected.data(), indices.data(), indices.size(), static_cast<int>(m_side),
+                  m_near.data(), m_far.data());
 }
 
-bool LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count, std::uint8_t* blocked) const
+bool LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count,
+                       std::uint8_t* blocked) const
 {
-    const LookUp l{m_u, m_v, m_w, static_cast<float>(m_side), m_near.data(), m_far.data(),
-                   points.x.data() + begin, points.y.data() + begin, points.z.data() + begin};
+    const LookUp l{m_u,
+                   m_v,
+                   m_w,
+                   static_cast<float>(m_side),
+                   m_near.data(),
+                   m_far.data(),
+                   points.x.data() + begin,
+                   points.y.data() + begin,
+                   points.z.data() + begin};
     return lookUpPoints(l, count, blocked);
 }
 

@@ -1,7 +1,7 @@
 #include "demo/scenes/falling.h"
 
-#include <glm/gtc/constants.hpp>
 #include <algorithm>
+#include <glm/gtc/constants.hpp>
 
 namespace penumbra {
 
@@ -11,26 +11,29 @@ enum class Hull { Convex, Pieces };
 
 struct Kind {
     const char* asset;
-    float size;  // largest side of the bounding box, metres
+    float size; // largest side of the bounding box, metres
     Hull hull;
     int count;
 };
 
 // 20 objects. The bunny alone has 35 thousand vertices, so there is one of it.
 constexpr Kind kKinds[] = {
-    {"bunny", 0.62f, Hull::Convex, 1},      {"knight", 0.50f, Hull::Pieces, 3},  {"teapot", 0.52f, Hull::Pieces, 3},
-    {"torus_knot", 0.50f, Hull::Pieces, 3}, {"gear", 0.46f, Hull::Convex, 3},    {"chess_pawn", 0.44f, Hull::Pieces, 2},
-    {"mug", 0.36f, Hull::Pieces, 3},        {"rounded_cube", 0.32f, Hull::Convex, 2},
+    {"bunny", 0.62f, Hull::Convex, 1},  {"knight", 0.50f, Hull::Pieces, 3},
+    {"teapot", 0.52f, Hull::Pieces, 3}, {"torus_knot", 0.50f, Hull::Pieces, 3},
+    {"gear", 0.46f, Hull::Convex, 3},   {"chess_pawn", 0.44f, Hull::Pieces, 2},
+    {"mug", 0.36f, Hull::Pieces, 3},    {"rounded_cube", 0.32f, Hull::Convex, 2},
 };
 
 struct Look {
     vec3 albedo;
     float glossFraction, glossExponent;
 };
-// Exponents that order 4 can carry: at 4, the lobe times P_4 integrates to an eighth of the lobe itself.
+// Exponents that order 4 can carry: at 4, the lobe times P_4 integrates to an eighth of the lobe
+// itself.
 constexpr Look kLooks[] = {
-    {{0.72f, 0.70f, 0.66f}, 0, 0},     {{0.70f, 0.28f, 0.18f}, 0, 0},        {{0.20f, 0.42f, 0.62f}, 0.45f, 4},
-    {{0.78f, 0.60f, 0.22f}, 0.5f, 4},  {{0.30f, 0.55f, 0.32f}, 0, 0},        {{0.55f, 0.24f, 0.45f}, 0.35f, 4},
+    {{0.72f, 0.70f, 0.66f}, 0, 0},     {{0.70f, 0.28f, 0.18f}, 0, 0},
+    {{0.20f, 0.42f, 0.62f}, 0.45f, 4}, {{0.78f, 0.60f, 0.22f}, 0.5f, 4},
+    {{0.30f, 0.55f, 0.32f}, 0, 0},     {{0.55f, 0.24f, 0.45f}, 0.35f, 4},
     {{0.75f, 0.72f, 0.70f}, 0.5f, 4},  {{0.18f, 0.55f, 0.55f}, 0, 0},
 };
 
@@ -38,7 +41,10 @@ constexpr Look kLooks[] = {
 class Random {
 public:
     explicit Random(std::uint64_t seed) : m_state(seed) {}
-    float uniform(float low, float high) { return low + (high - low) * static_cast<float>(next() >> 40) * 0x1p-24f; }
+    float uniform(float low, float high)
+    {
+        return low + (high - low) * static_cast<float>(next() >> 40) * 0x1p-24f;
+    }
 
 private:
     std::uint64_t next()
@@ -54,8 +60,10 @@ private:
 // Uniform over rotations (Shoemake 1992).
 quat randomRotation(Random& random)
 {
-    const float u = random.uniform(0, 1), a = random.uniform(0, 2 * glm::pi<float>()), b = random.uniform(0, 2 * glm::pi<float>());
-    return quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a), std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b));
+    const float u = random.uniform(0, 1), a = random.uniform(0, 2 * glm::pi<float>()),
+                b = random.uniform(0, 2 * glm::pi<float>());
+    return quat(std::sqrt(u) * std::cos(b), std::sqrt(1 - u) * std::sin(a),
+                std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b));
 }
 
 struct LoadedKind {
@@ -71,7 +79,8 @@ Result<LoadedKind> loadKind(const Kind& kind, const SceneOptions& options, Asset
         return asset.error();
     const MeshAsset& mesh = store.mesh(*asset);
     if (!mesh.field)
-        return Error{fmt::format("{}.glb: has no shadow field; bake it without --no-field", kind.asset)};
+        return Error{
+            fmt::format("{}.glb: has no shadow field; bake it without --no-field", kind.asset)};
     const vec3 extent = mesh.boundsMax - mesh.boundsMin;
     const float scale = kind.size / std::max({extent.x, extent.y, extent.z});
 
@@ -79,9 +88,10 @@ Result<LoadedKind> loadKind(const Kind& kind, const SceneOptions& options, Asset
     std::vector<vec3> points;
     for (const vec3& p : mesh.positions)
         points.push_back(p * scale);
-    Result<CollisionShape> shape = kind.hull == Hull::Pieces
-                                       ? meshShape(points, mesh.indices, {.maxPieces = 14, .resolution = 32})
-                                       : hullShape(points);
+    Result<CollisionShape> shape =
+        kind.hull == Hull::Pieces
+            ? meshShape(points, mesh.indices, {.maxPieces = 14, .resolution = 32})
+            : hullShape(points);
     if (!shape)
         return fail(shape.error(), kind.asset);
     return LoadedKind{*asset, scale, std::move(*shape)};
@@ -95,7 +105,11 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
     scene->name = "falling";
     scene->ground = true;
     scene->exposure = 1.6f;
-    scene->camera = {.target = vec3(0, 0.22f, 0), .distance = 4.1f, .yaw = 0.55f, .pitch = 0.52f, .fieldOfView = 0.62f};
+    scene->camera = {.target = vec3(0, 0.22f, 0),
+                     .distance = 4.1f,
+                     .yaw = 0.55f,
+                     .pitch = 0.52f,
+                     .fieldOfView = 0.62f};
     Result<Environment> environment = loadEnvironment(
         options.assets / ((options.environment.empty() ? "sunset" : options.environment) + ".env"));
     if (!environment)
@@ -105,7 +119,8 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
     Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / "floor.glb");
     if (!floor)
         return floor.error();
-    scene->world.create(Transform{}, MeshInstance{*floor}, Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
+    scene->world.create(Transform{}, MeshInstance{*floor},
+                        Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
 
     std::vector<LoadedKind> kinds;
     for (const Kind& kind : kKinds) {
@@ -115,8 +130,8 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
         kinds.push_back(std::move(*loaded));
     }
 
-    // One object per slot of a 3 x 3 x 3 lattice above the floor, from below, kinds in turn, each jittered and turned: they
-    // start apart whatever the seed.
+    // One object per slot of a 3 x 3 x 3 lattice above the floor, from below, kinds in turn, each
+    // jittered and turned: they start apart whatever the seed.
     Random random(options.seed);
     std::vector<BodyDescription> bodies{{.id = 0, .shape = *groundShape(0)}};
     int remaining[std::size(kKinds)], slot = 0;
@@ -130,19 +145,23 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
             placed = true;
             const int column = slot % 9, layer = slot / 9;
             const quat rotation = randomRotation(random);
-            const vec3 position((static_cast<float>(column % 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f),
-                                0.55f + static_cast<float>(layer) * 0.75f + random.uniform(0, 0.1f),
-                                (static_cast<float>(column / 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f));
-            BodyDescription body{.id = static_cast<std::uint64_t>(slot) + 1, .shape = kinds[k].shape};
+            const vec3 position(
+                (static_cast<float>(column % 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f),
+                0.55f + static_cast<float>(layer) * 0.75f + random.uniform(0, 0.1f),
+                (static_cast<float>(column / 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f));
+            BodyDescription body{.id = static_cast<std::uint64_t>(slot) + 1,
+                                 .shape = kinds[k].shape};
             constexpr float kDensity = 300; // kg/m³: light wood; only the ratios matter here
             body.mass = std::max(0.2f, kDensity * body.shape.volume());
             body.pose = {position, rotation};
-            body.motion.angularVelocity = vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+            body.motion.angularVelocity =
+                vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
             const Look& look = kLooks[static_cast<std::size_t>(slot) % std::size(kLooks)];
-            scene->world.create(
-                Transform{position, kinds[k].scale, vec4(rotation.x, rotation.y, rotation.z, rotation.w)},
-                MeshInstance{kinds[k].asset}, ShadowFieldOccluder{kinds[k].asset}, RigidBody{body.id},
-                Material{look.albedo, look.glossFraction, look.glossExponent});
+            scene->world.create(Transform{position, kinds[k].scale,
+                                          vec4(rotation.x, rotation.y, rotation.z, rotation.w)},
+                                MeshInstance{kinds[k].asset}, ShadowFieldOccluder{kinds[k].asset},
+                                RigidBody{body.id},
+                                Material{look.albedo, look.glossFraction, look.glossExponent});
             bodies.push_back(std::move(body));
             ++slot;
         }

@@ -1,4 +1,5 @@
-// Tamura et al. 2006, third scene: 20 dynamic objects under an environment map, at least 88,739 vertices in all.
+// Tamura et al. 2006, third scene: 20 dynamic objects under an environment map, at least 88,739
+// vertices in all.
 #pragma once
 
 #include "demo/scene.h"

@@ -1,7 +1,9 @@
-// Where a point falls in a shadow field, and the field's value there. Geometry and quantisation: assets/shadow_field.h.
+// Where a point falls in a shadow field, and the field's value there. Geometry and quantisation:
+// assets/shadow_field.h.
 //   trilinear    8 samples, float weights: Zhou et al. 2005 section 3.3, used by kernel `literal`
 //   tetrahedral  4 samples, integer weights of 1/256, used by kernel `exact` (findings section 1)
-// The entry point fetches the samples; a sample is one uvec4 of 16 unsigned bytes, coefficient 0 in the lowest.
+// The entry point fetches the samples; a sample is one uvec4 of 16 unsigned bytes, coefficient 0 in
+// the lowest.
 #ifndef PENUMBRA_SHADERS_SHARED_FIELD_H
 #define PENUMBRA_SHADERS_SHARED_FIELD_H
 #include "shaders/shared/sh.h"
@@ -10,17 +12,20 @@ PENUMBRA_BEGIN
 // Grid of a field with one side on all shells, as the GPU holds it.
 struct FieldGrid {
     uint firstSample;
-    uint side;         // nodes per edge of the octahedral map
-    float shellScale;  // shell coordinate = shellScale * log2(radius) + shellBias, radius in bounding radii
+    uint side;        // nodes per edge of the octahedral map
+    float shellScale; // shell coordinate = shellScale * log2(radius) + shellBias, radius in
+                      // bounding radii
     float shellBias;
-    float lastShell;   // shell count - 1
+    float lastShell; // shell count - 1
 };
 
-// A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] along u, v and shell.
+// A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] along u,
+// v and shell.
 struct FieldCell {
     uint sample0;
     vec3 fraction;
-    float decay;       // g(r), faded to 0 over the last interval of shells, where the field ends without a step
+    float decay; // g(r), faded to 0 over the last interval of shells, where the field ends without
+                 // a step
 };
 
 // Octahedral map of a direction (any length but 0) to [0, 1]^2.
@@ -29,7 +34,8 @@ PENUMBRA_FN vec2 octahedralUv(vec3 d)
     const float scale = 1.0f / (abs(d.x) + abs(d.y) + abs(d.z));
     vec2 p = vec2(d.x * scale, d.y * scale);
     if (d.z < 0.0f)
-        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
+        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
+                 (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
     return p * 0.5f + vec2(0.5f);
 }
 
@@ -38,13 +44,18 @@ PENUMBRA_FN vec3 octahedralDirection(vec2 uv)
     const vec2 p = uv * 2.0f - vec2(1.0f);
     vec3 d = vec3(p.x, p.y, 1.0f - abs(p.x) - abs(p.y));
     if (d.z < 0.0f)
-        d = vec3((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f), d.z);
+        d = vec3((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
+                 (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f), d.z);
     return normalize(d);
 }
 
-// g(r): how the deviation from "unoccluded" shrinks with the distance, r2 = squared radius in bounding radii. Far away
-// the blocked solid angle goes with 1 / r^2; the constant keeps the centre finite.
-PENUMBRA_FN float fieldDecay(float r2) { return 1.0f / (0.25f + r2); }
+// g(r): how the deviation from "unoccluded" shrinks with the distance, r2 = squared radius in
+// bounding radii. Far away the blocked solid angle goes with 1 / r^2; the constant keeps the centre
+// finite.
+PENUMBRA_FN float fieldDecay(float r2)
+{
+    return 1.0f / (0.25f + r2);
+}
 
 // p: the point relative to the field's centre, field axes, unit: bounding radii.
 PENUMBRA_FN FieldCell fieldCell(vec3 p, FieldGrid grid)
@@ -60,13 +71,16 @@ PENUMBRA_FN FieldCell fieldCell(vec3 p, FieldGrid grid)
 
     FieldCell cell;
     // Through int: lavapipe converts float to uint much slower.
-    cell.sample0 = grid.firstSample + (uint(int(shell0)) * grid.side + uint(int(node.y))) * grid.side + uint(int(node.x));
+    cell.sample0 = grid.firstSample +
+                   (uint(int(shell0)) * grid.side + uint(int(node.y))) * grid.side +
+                   uint(int(node.x));
     cell.fraction = vec3(at.x - node.x, at.y - node.y, inside - shell0);
     cell.decay = fieldDecay(r2) * clamp(grid.lastShell - shell, 0.0f, 1.0f);
     return cell;
 }
 
-// The tetrahedron of the cell that holds the point: its 4 corners, as steps from sample0, and weights that sum to 256.
+// The tetrahedron of the cell that holds the point: its 4 corners, as steps from sample0, and
+// weights that sum to 256.
 struct FieldTetrahedron {
     uvec4 offset;
     uvec4 weight;
@@ -90,14 +104,16 @@ PENUMBRA_FN FieldTetrahedron fieldTetrahedron(vec3 f, uint side)
     return t;
 }
 
-// Weighted sum of the 4 corners, all 16 bytes at once: two bytes of 16 bits each in one 32-bit word, since
-// 255 * 256 < 2^16. Returns (sum - 128 * 256) per coefficient, that is, 256 times the deviation in quantisation steps.
+// Weighted sum of the 4 corners, all 16 bytes at once: two bytes of 16 bits each in one 32-bit
+// word, since 255 * 256 < 2^16. Returns (sum - 128 * 256) per coefficient, that is, 256 times the
+// deviation in quantisation steps.
 PENUMBRA_FN Sh4 fieldBlend(uvec4 s0, uvec4 s1, uvec4 s2, uvec4 s3, uvec4 weight)
 {
     const uvec4 mask = uvec4(0x00ff00ffu);
-    const uvec4 even = (s0 & mask) * weight.x + (s1 & mask) * weight.y + (s2 & mask) * weight.z + (s3 & mask) * weight.w;
-    const uvec4 odd = ((s0 >> 8u) & mask) * weight.x + ((s1 >> 8u) & mask) * weight.y + ((s2 >> 8u) & mask) * weight.z +
-                      ((s3 >> 8u) & mask) * weight.w;
+    const uvec4 even = (s0 & mask) * weight.x + (s1 & mask) * weight.y + (s2 & mask) * weight.z +
+                       (s3 & mask) * weight.w;
+    const uvec4 odd = ((s0 >> 8u) & mask) * weight.x + ((s1 >> 8u) & mask) * weight.y +
+                      ((s2 >> 8u) & mask) * weight.z + ((s3 >> 8u) & mask) * weight.w;
     Sh4 f;
     for (int k = 0; k < 4; ++k) {
         f.c[4 * k] = float(int(even[k] & 0xffffu) - 32768);
@@ -108,7 +124,8 @@ PENUMBRA_FN Sh4 fieldBlend(uvec4 s0, uvec4 s1, uvec4 s2, uvec4 s3, uvec4 weight)
     return f;
 }
 
-// Deviation in steps -> visibility. scale[l] = K_l * decay / 256, or K_l * decay for the trilinear sum.
+// Deviation in steps -> visibility. scale[l] = K_l * decay / 256, or K_l * decay for the trilinear
+// sum.
 PENUMBRA_FN Sh4 fieldVisibility(Sh4 f, vec4 scale)
 {
     f.c[0] = f.c[0] * scale.x + kSqrt4Pi;

@@ -1,15 +1,18 @@
-// What a frame knows of an instance, a field, a cluster and itself: the structs that CPU and GPU share, and the maths that
-// turns a transform into the constants of the combine kernels. Layout: scalar; offsets checked in tests/systems.
+// What a frame knows of an instance, a field, a cluster and itself: the structs that CPU and GPU
+// share, and the maths that turns a transform into the constants of the combine kernels. Layout:
+// scalar; offsets checked in tests/systems.
 #ifndef PENUMBRA_SHADERS_SHARED_INSTANCE_H
 #define PENUMBRA_SHADERS_SHARED_INSTANCE_H
 #include "shaders/shared/field.h"
 PENUMBRA_BEGIN
 
 PENUMBRA_CONST uint kNoField = 0xffffffffu;
-PENUMBRA_CONST uint kClusterReceivers = 64u;    // receivers per cluster; a mesh's last cluster is padded to it
-PENUMBRA_CONST uint kMaxClusterOccluders = 32u; // list entries per cluster; farther ones are dropped and counted
-PENUMBRA_CONST uint kSortGroup = 16u;           // clusters per workgroup of entity_sort: one per lane
-PENUMBRA_CONST uint kGpuInstanceTexels = 16u;   // vec4 rows of a GpuInstance
+PENUMBRA_CONST uint kClusterReceivers =
+    64u; // receivers per cluster; a mesh's last cluster is padded to it
+PENUMBRA_CONST uint kMaxClusterOccluders =
+    32u; // list entries per cluster; farther ones are dropped and counted
+PENUMBRA_CONST uint kSortGroup = 16u;         // clusters per workgroup of entity_sort: one per lane
+PENUMBRA_CONST uint kGpuInstanceTexels = 16u; // vec4 rows of a GpuInstance
 
 // Written by the CPU when the entity changed.
 struct InstanceInput {
@@ -19,17 +22,17 @@ struct InstanceInput {
     vec3 albedo;         // linear Rec. 709
     float glossFraction; // part of the reflectance in the Phong lobe
     float glossExponent;
-    uint field;          // index of a FieldInput, kNoField: not an occluder
+    uint field; // index of a FieldInput, kNoField: not an occluder
     uint padding0;
     uint padding1;
 };
 
 // One per field asset.
 struct FieldInput {
-    vec3 center;       // object space, metres
-    float radius;      // metres
-    vec4 bandScale;    // K of band 0..3
-    uint firstSample;  // in the samples of all fields
+    vec3 center;      // object space, metres
+    float radius;     // metres
+    vec4 bandScale;   // K of band 0..3
+    uint firstSample; // in the samples of all fields
     uint side;
     uint shells;
     float innerRadius; // bounding radii
@@ -39,25 +42,26 @@ struct FieldInput {
     uint padding2;
 };
 
-// Written by pass instance_update, read as rows of a texel buffer by the combine kernels and as per-instance vertex
-// attributes by pass raster.
+// Written by pass instance_update, read as rows of a texel buffer by the combine kernels and as
+// per-instance vertex attributes by pass raster.
 struct GpuInstance {
     vec4 fieldFromWorld0; // rows of the map to bounding radii in the field's axes
     vec4 fieldFromWorld1;
     vec4 fieldFromWorld2;
-    vec4 gamma0;          // ShRotation world from object: cos gamma .xyz, sin gamma .x …
-    vec4 gamma1beta;      // … sin gamma .yz, cos beta .xy
-    vec4 beta;            // cos beta .z, sin beta .xyz
-    vec4 alpha0;          // cos alpha .xyz, sin alpha .x
-    vec4 alpha1grid;      // sin alpha .yz, bits of firstSample, bits of side
+    vec4 gamma0;     // ShRotation world from object: cos gamma .xyz, sin gamma .x …
+    vec4 gamma1beta; // … sin gamma .yz, cos beta .xy
+    vec4 beta;       // cos beta .z, sin beta .xyz
+    vec4 alpha0;     // cos alpha .xyz, sin alpha .x
+    vec4 alpha1grid; // sin alpha .yz, bits of firstSample, bits of side
     vec4 bandScale;
-    vec4 shells;          // shellScale, shellBias, lastShell, influence radius (world, metres; 0: not an occluder)
+    vec4 shells; // shellScale, shellBias, lastShell, influence radius (world, metres; 0: not an
+                 // occluder)
     vec4 worldFromObject0;
     vec4 worldFromObject1;
     vec4 worldFromObject2;
-    vec4 material;        // albedo, glossFraction
-    vec4 material1;       // glossExponent, scale, 0, 0
-    vec4 sphere;          // of the field: centre and bounding radius, world, metres
+    vec4 material;  // albedo, glossFraction
+    vec4 material1; // glossExponent, scale, 0, 0
+    vec4 sphere;    // of the field: centre and bounding radius, world, metres
 };
 
 // Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
@@ -76,10 +80,11 @@ struct SceneCluster {
 
 // Header that passes cluster_cull and entity_sort fill for the passes after them.
 struct CullResult {
-    uint sortGroups[3];    // VkDispatchIndirectCommand of entity_sort
-    uint combineGroups[3]; // VkDispatchIndirectCommand of combine: one workgroup per visible cluster
-    uint pairs;            // cluster-occluder pairs that are combined
-    uint dropped;          // pairs beyond kMaxClusterOccluders
+    uint sortGroups[3]; // VkDispatchIndirectCommand of entity_sort
+    uint
+        combineGroups[3]; // VkDispatchIndirectCommand of combine: one workgroup per visible cluster
+    uint pairs;           // cluster-occluder pairs that are combined
+    uint dropped;         // pairs beyond kMaxClusterOccluders
 };
 
 // Constants of one frame.
@@ -96,8 +101,9 @@ struct FrameConstants {
     float backgroundIntensity;
 };
 
-// A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band 1, 2, 3, 83 numbers
-// packed in order. Vectors of 4, because a storage buffer read costs the same for 1 number as for 4.
+// A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
+// 1, 2, 3, 83 numbers packed in order. Vectors of 4, because a storage buffer read costs the same
+// for 1 number as for 4.
 struct DenseRotation {
     vec4 m[21];
 };
@@ -120,7 +126,8 @@ PENUMBRA_FN vec3 rotate(vec4 q, vec3 v)
 
 PENUMBRA_FN mat3 rotationMatrix(vec4 q)
 {
-    return mat3(rotate(q, vec3(1.0f, 0.0f, 0.0f)), rotate(q, vec3(0.0f, 1.0f, 0.0f)), rotate(q, vec3(0.0f, 0.0f, 1.0f)));
+    return mat3(rotate(q, vec3(1.0f, 0.0f, 0.0f)), rotate(q, vec3(0.0f, 1.0f, 0.0f)),
+                rotate(q, vec3(0.0f, 0.0f, 1.0f)));
 }
 
 PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
@@ -140,13 +147,17 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
     g.gamma1beta = vec4(s.gamma.s.y, s.gamma.s.z, s.beta.c.x, s.beta.c.y);
     g.beta = vec4(s.beta.c.z, s.beta.s.x, s.beta.s.y, s.beta.s.z);
     g.alpha0 = vec4(s.alpha.c, s.alpha.s.x);
-    g.alpha1grid = vec4(s.alpha.s.y, s.alpha.s.z, uintBitsToFloat(f.firstSample), uintBitsToFloat(f.side));
+    g.alpha1grid =
+        vec4(s.alpha.s.y, s.alpha.s.z, uintBitsToFloat(f.firstSample), uintBitsToFloat(f.side));
     g.bandScale = f.bandScale;
     g.shells = vec4(shellScale, -shellScale * log2(f.innerRadius), float(f.shells - 1u),
                     i.field == kNoField ? 0.0f : i.scale * f.radius * f.outerRadius);
-    g.worldFromObject0 = vec4(i.scale * r[0][0], i.scale * r[1][0], i.scale * r[2][0], i.position.x);
-    g.worldFromObject1 = vec4(i.scale * r[0][1], i.scale * r[1][1], i.scale * r[2][1], i.position.y);
-    g.worldFromObject2 = vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
+    g.worldFromObject0 =
+        vec4(i.scale * r[0][0], i.scale * r[1][0], i.scale * r[2][0], i.position.x);
+    g.worldFromObject1 =
+        vec4(i.scale * r[0][1], i.scale * r[1][1], i.scale * r[2][1], i.position.y);
+    g.worldFromObject2 =
+        vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
     g.material = vec4(i.albedo, i.glossFraction);
     g.material1 = vec4(i.glossExponent, i.scale, 0.0f, 0.0f);
     g.sphere = vec4(center, i.scale * f.radius);
@@ -207,7 +218,8 @@ PENUMBRA_FN DenseRotation denseRotation(ShRotation r)
         const int first = band * band, width = 2 * band + 1;
         const int base = band == 1 ? 0 : (band == 2 ? 9 : 34);
         for (int i = 0; i < width; ++i)
-            d.m[(base + i * width + (j - first)) / 4][(base + i * width + (j - first)) % 4] = image.c[first + i];
+            d.m[(base + i * width + (j - first)) / 4][(base + i * width + (j - first)) % 4] =
+                image.c[first + i];
     }
     return d;
 }
@@ -240,12 +252,16 @@ PENUMBRA_FN Sh4 shRotateDense(Sh4 f, DenseRotation d)
 PENUMBRA_END
 
 #ifdef __cplusplus
-static_assert(sizeof(penumbra::InstanceInput) == 64 && offsetof(penumbra::InstanceInput, albedo) == 32);
-static_assert(sizeof(penumbra::FieldInput) == 64 && offsetof(penumbra::FieldInput, firstSample) == 32);
+static_assert(sizeof(penumbra::InstanceInput) == 64 &&
+              offsetof(penumbra::InstanceInput, albedo) == 32);
+static_assert(sizeof(penumbra::FieldInput) == 64 &&
+              offsetof(penumbra::FieldInput, firstSample) == 32);
 static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
 static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 160);
-static_assert(sizeof(penumbra::CullResult) == 32 && offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 1024 && offsetof(penumbra::FrameConstants, clusterCount) == 1008);
+static_assert(sizeof(penumbra::CullResult) == 32 &&
+              offsetof(penumbra::CullResult, combineGroups) == 12);
+static_assert(sizeof(penumbra::FrameConstants) == 1024 &&
+              offsetof(penumbra::FrameConstants, clusterCount) == 1008);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif
 #endif

@@ -1,9 +1,12 @@
-// Real orthonormal spherical harmonics of order 4: bands 0..3, 16 coefficients, index l(l+1)+m, no Condon-Shortley
-// phase. Axes as everywhere in the project: x, y, z of the space at hand, polar axis z.
+// Real orthonormal spherical harmonics of order 4: bands 0..3, 16 coefficients, index l(l+1)+m, no
+// Condon-Shortley phase. Axes as everywhere in the project: x, y, z of the space at hand, polar
+// axis z.
 //   Sh4       coefficients of a function on the sphere
-//   ShNodal   its values at the 32 nodes kShNodes of a quadrature rule of degree 9. The rule integrates products of three
-//             order-4 functions exactly, so a product of two in nodal form, projected back, equals the triple product;
-//             longer chains keep more than order 4, which is closer to the truth (findings section 1).
+//   ShNodal   its values at the 32 nodes kShNodes of a quadrature rule of degree 9. The rule
+//   integrates products of three
+//             order-4 functions exactly, so a product of two in nodal form, projected back, equals
+//             the triple product; longer chains keep more than order 4, which is closer to the
+//             truth (findings section 1).
 #ifndef PENUMBRA_SHADERS_SHARED_SH_H
 #define PENUMBRA_SHADERS_SHARED_SH_H
 #include "shaders/shared/interop.h"
@@ -25,7 +28,8 @@ struct ShTurn {
     vec3 s;
 };
 
-// A rotation R = Rz(alpha) Ry(beta) Rz(gamma): 18 numbers, which cost less to load than the 84 of a dense matrix.
+// A rotation R = Rz(alpha) Ry(beta) Rz(gamma): 18 numbers, which cost less to load than the 84 of a
+// dense matrix.
 struct ShRotation {
     ShTurn gamma;
     ShTurn beta;
@@ -59,8 +63,8 @@ PENUMBRA_FN Sh4 shBasis(vec3 d)
     return b;
 }
 
-// A function that is symmetric about `axis`: scale[l] are its zonal coefficients over the basis value, that is, the
-// function is sum_l scale[l] sum_m Y_lm(axis) Y_lm(w).
+// A function that is symmetric about `axis`: scale[l] are its zonal coefficients over the basis
+// value, that is, the function is sum_l scale[l] sum_m Y_lm(axis) Y_lm(w).
 PENUMBRA_FN Sh4 shZonal(vec3 axis, vec4 scale)
 {
     Sh4 b = shBasis(axis);
@@ -143,7 +147,8 @@ PENUMBRA_FN Sh4 shRotateZ(Sh4 f, ShTurn t)
     return g;
 }
 
-// g(w) = f(R^-1 w): 104 multiplications and 52 additions. Kautz et al. 2002, as Tamura et al. 2006 section 5.2 use it.
+// g(w) = f(R^-1 w): 104 multiplications and 52 additions. Kautz et al. 2002, as Tamura et al. 2006
+// section 5.2 use it.
 PENUMBRA_FN Sh4 shRotate(Sh4 f, ShRotation r)
 {
     return shRotateZ(shRotateX270(shRotateZ(shRotateX90(shRotateZ(f, r.gamma)), r.beta)), r.alpha);

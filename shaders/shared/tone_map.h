@@ -1,5 +1,6 @@
-// Radiance to display: exposure, Khronos PBR Neutral tone mapper (Khronos Group, 2024, the published GLSL in our words),
-// sRGB transfer function (IEC 61966-2-1). Used by pass post and for the ray-traced pictures, so that both look alike.
+// Radiance to display: exposure, Khronos PBR Neutral tone mapper (Khronos Group, 2024, the
+// published GLSL in our words), sRGB transfer function (IEC 61966-2-1). Used by pass post and for
+// the ray-traced pictures, so that both look alike.
 #ifndef PENUMBRA_SHADERS_SHARED_TONE_MAP_H
 #define PENUMBRA_SHADERS_SHARED_TONE_MAP_H
 #include "shaders/shared/interop.h"
@@ -26,7 +27,8 @@ PENUMBRA_FN float srgbFromLinear(float c)
     return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 1.0f / 2.4f) - 0.055f;
 }
 
-// [0, 1]^3 for an 8-bit sRGB image. Negative radiance, which a truncated product can give, is black.
+// [0, 1]^3 for an 8-bit sRGB image. Negative radiance, which a truncated product can give, is
+// black.
 PENUMBRA_FN vec3 displayColor(vec3 radiance, float exposure)
 {
     const vec3 c = clamp(toneMap(max(radiance, vec3(0.0f)) * exposure), vec3(0.0f), vec3(1.0f));

@@ -1,16 +1,18 @@
-// The receiver's side of a product: its self-visibility and its BRDF times cosine, the first factor T_p of Zhou et al.
-// 2005 Fig. 5, and what the product gives against the light.
+// The receiver's side of a product: its self-visibility and its BRDF times cosine, the first factor
+// T_p of Zhou et al. 2005 Fig. 5, and what the product gives against the light.
 //   f(w) = (1 - g) max(0, n.w) / pi  +  g (e + 2) / (2 pi) max(0, r.w)^e max(0, n.w)
-// n normal, r mirror direction of the view, g gloss fraction, e Phong exponent. Reflected radiance = albedo times the
-// integral of L V f. The same f is ray-traced in demo/reference.
+// n normal, r mirror direction of the view, g gloss fraction, e Phong exponent. Reflected radiance
+// = albedo times the integral of L V f. The same f is ray-traced in demo/reference.
 #ifndef PENUMBRA_SHADERS_SHARED_TRANSFER_H
 #define PENUMBRA_SHADERS_SHARED_TRANSFER_H
 #include "shaders/shared/field.h"
 PENUMBRA_BEGIN
 
-// A receiver in memory: two uvec4. Vertex shaders read the position as an attribute, stride 32, offset 0.
+// A receiver in memory: two uvec4. Vertex shaders read the position as an attribute, stride 32,
+// offset 0.
 struct ReceiverTexels {
-    uvec4 geometry;       // bits of the position x, y, z (object space, metres), octahedral normal 2 x 16 bits
+    uvec4 geometry; // bits of the position x, y, z (object space, metres), octahedral normal 2 x 16
+                    // bits
     uvec4 selfVisibility; // 16 bytes, see assets/mesh_asset.h
 };
 
@@ -30,7 +32,8 @@ PENUMBRA_FN uint packNormal(vec3 n)
 
 PENUMBRA_FN vec3 unpackNormal(uint bits)
 {
-    return octahedralDirection(vec2(float(int(bits & 0xffffu)), float(int(bits >> 16u))) * (1.0f / 65535.0f));
+    return octahedralDirection(vec2(float(int(bits & 0xffffu)), float(int(bits >> 16u))) *
+                               (1.0f / 65535.0f));
 }
 
 // Object space. `scale` is assets/mesh_asset.h's kSelfVisibilityScale.
@@ -39,18 +42,21 @@ PENUMBRA_FN Sh4 selfVisibility(uvec4 bytes, float scale)
     return fieldVisibility(fieldSteps(bytes), vec4(scale, scale, scale, scale));
 }
 
-// max(0, n.w): bands 0..2; band 3 of the clamped cosine is 0 (Ramamoorthi and Hanrahan 2001, eq. 8).
+// max(0, n.w): bands 0..2; band 3 of the clamped cosine is 0 (Ramamoorthi and Hanrahan 2001, eq.
+// 8).
 PENUMBRA_FN Sh4 cosineLobe(vec3 normal)
 {
     return shZonal(normal, vec4(3.14159265f, 2.09439510f, 0.785398163f, 0.0f));
 }
 
-// (e + 2) / (2 pi) max(0, r.w)^e: zonal coefficients 2 pi times the integral of t^e P_l(t) over [0, 1], in closed form.
+// (e + 2) / (2 pi) max(0, r.w)^e: zonal coefficients 2 pi times the integral of t^e P_l(t) over [0,
+// 1], in closed form.
 PENUMBRA_FN Sh4 phongLobe(vec3 mirror, float e)
 {
     const float n = e + 2.0f;
-    const vec4 scale = vec4(n / (e + 1.0f), 1.0f, 0.5f * n * (3.0f / (e + 3.0f) - 1.0f / (e + 1.0f)),
-                            0.5f * n * (5.0f / (e + 4.0f) - 3.0f / n));
+    const vec4 scale =
+        vec4(n / (e + 1.0f), 1.0f, 0.5f * n * (3.0f / (e + 3.0f) - 1.0f / (e + 1.0f)),
+             0.5f * n * (5.0f / (e + 4.0f) - 3.0f / n));
     return shZonal(mirror, scale);
 }
 
@@ -60,7 +66,8 @@ struct ZonalPolynomial {
     float quartic;
 };
 
-// max(0, t) up to band 4: 1/4 P_0 + 1/2 P_1 + 5/16 P_2 - 3/32 P_4 (Ramamoorthi and Hanrahan 2001, eq. 19).
+// max(0, t) up to band 4: 1/4 P_0 + 1/2 P_1 + 5/16 P_2 - 3/32 P_4 (Ramamoorthi and Hanrahan 2001,
+// eq. 19).
 PENUMBRA_FN ZonalPolynomial cosinePolynomial()
 {
     ZonalPolynomial p;
@@ -69,11 +76,13 @@ PENUMBRA_FN ZonalPolynomial cosinePolynomial()
     return p;
 }
 
-// (e + 2) / (2 pi) max(0, t)^e up to band 4: sum of (2l + 1) / 2 m_l P_l(t), m_l the integral of t^e P_l over [0, 1].
+// (e + 2) / (2 pi) max(0, t)^e up to band 4: sum of (2l + 1) / 2 m_l P_l(t), m_l the integral of
+// t^e P_l over [0, 1].
 PENUMBRA_FN ZonalPolynomial phongPolynomial(float e)
 {
     const float n = (e + 2.0f) * 0.159154943f;
-    const float i0 = 1.0f / (e + 1.0f), i1 = 1.0f / (e + 2.0f), i2 = 1.0f / (e + 3.0f), i3 = 1.0f / (e + 4.0f),
+    const float i0 = 1.0f / (e + 1.0f), i1 = 1.0f / (e + 2.0f), i2 = 1.0f / (e + 3.0f),
+                i3 = 1.0f / (e + 4.0f),
                 i4 = 1.0f / (e + 5.0f); // integrals of t^(e + k)
     const float m0 = 0.5f * n * i0;
     const float m1 = 1.5f * n * i1;
@@ -91,9 +100,9 @@ PENUMBRA_FN float zonalValue(ZonalPolynomial p, float t)
     return p.c.x + t * (p.c.y + t * (p.c.z + t * (p.c.w + t * p.quartic)));
 }
 
-// T in nodal form: the factors are multiplied node by node and never truncated. The lobes go up to band 4, one more than
-// the fields: with light up to band 5 their product has degree 9, which the rule still integrates exactly, and the
-// unshadowed radiance is right up to band 4 instead of 3.
+// T in nodal form: the factors are multiplied node by node and never truncated. The lobes go up to
+// band 4, one more than the fields: with light up to band 5 their product has degree 9, which the
+// rule still integrates exactly, and the unshadowed radiance is right up to band 4 instead of 3.
 PENUMBRA_FN ShNodal transferNodal(Sh4 visibility, Receiver receiver)
 {
     ShNodal t = shNodes(visibility);

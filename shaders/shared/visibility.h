@@ -9,10 +9,10 @@ PENUMBRA_FN bool sphereOutside(vec4 plane, vec3 center, float radius)
     return dot(vec3(plane.x, plane.y, plane.z), center) + plane.w < -radius;
 }
 
-// All faces of a cluster look away from the eye. Every normal n lies within angle a of `axis` (unit, cutoff = cos a),
-// every point p in the sphere; view = centre - eye. With theta = angle(axis, view),
-// dot(n, p - eye) >= |view| cos(theta + a) - radius while theta + a <= 180 degrees (Zhou et al. 2005 section 4.2, there
-// for single vertices).
+// All faces of a cluster look away from the eye. Every normal n lies within angle a of `axis`
+// (unit, cutoff = cos a), every point p in the sphere; view = centre - eye. With theta =
+// angle(axis, view), dot(n, p - eye) >= |view| cos(theta + a) - radius while theta + a <= 180
+// degrees (Zhou et al. 2005 section 4.2, there for single vertices).
 PENUMBRA_FN bool facesAway(vec3 view, vec3 axis, float cutoff, float radius)
 {
     if (cutoff <= 0.0f)
@@ -22,8 +22,8 @@ PENUMBRA_FN bool facesAway(vec3 view, vec3 axis, float cutoff, float radius)
     return along * cutoff - across * sqrt(max(1.0f - cutoff * cutoff, 0.0f)) > radius;
 }
 
-// A sphere lies under the horizon of every receiver of a cluster: to = its centre - the cluster's centre. The largest
-// dot(n, to) over the cone of normals is |to| cos(max(0, theta - a)).
+// A sphere lies under the horizon of every receiver of a cluster: to = its centre - the cluster's
+// centre. The largest dot(n, to) over the cone of normals is |to| cos(max(0, theta - a)).
 PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cutoff, float radius)
 {
     if (cutoff <= 0.0f)
@@ -31,8 +31,9 @@ PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cuto
     const float distance = length(to);
     const float along = dot(axis, to);
     const float across = length(to - along * axis);
-    const float highest =
-        along >= cutoff * distance ? distance : along * cutoff + across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
+    const float highest = along >= cutoff * distance
+                              ? distance
+                              : along * cutoff + across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
     return highest < -(radius + sphereRadius);
 }
 

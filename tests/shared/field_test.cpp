@@ -26,13 +26,15 @@ TEST(Field, OctahedralMapReturns)
         EXPECT_LT(length(octahedralDirection(octahedralUv(axis)) - axis), 1e-6);
 }
 
-// Half a step of each coordinate, (1, 1, -2) / 65535 before normalising, where that stretches most: the face centres.
+// Half a step of each coordinate, (1, 1, -2) / 65535 before normalising, where that stretches most:
+// the face centres.
 TEST(Field, PackedNormalIsWithinHalfAStep)
 {
     RandomSphere random(2);
     for (int i = 0; i < 1000; ++i) {
         const vec3 n = random.direction();
-        EXPECT_LT(length(unpackNormal(packNormal(n)) - n), std::sqrt(6.0f) / 65535 * std::sqrt(3.0f));
+        EXPECT_LT(length(unpackNormal(packNormal(n)) - n),
+                  std::sqrt(6.0f) / 65535 * std::sqrt(3.0f));
     }
 }
 
@@ -50,7 +52,8 @@ TEST(Field, NodesSampleThemselves)
                 for (uint corner = 0; corner < 8; ++corner) {
                     const uint sample = cell.sample0 + fieldCornerOffset(corner, 17);
                     const uint sx = sample % 17, sy = sample / 17 % 17, ss = sample / 289;
-                    const vec3 node = octahedralDirection(vec2(sx, sy) / 16.0f); // the folded edges name one direction twice
+                    const vec3 node = octahedralDirection(
+                        vec2(sx, sy) / 16.0f); // the folded edges name one direction twice
                     if (ss == shell && length(node - d) < 1e-3f)
                         weight += fieldCornerWeight(corner, cell.fraction);
                 }
@@ -70,7 +73,8 @@ TEST(Field, CellStaysInsideTheGrid)
         const FieldCell cell = fieldCell(p, grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, 65);
         ASSERT_LT(cell.sample0 + fieldCornerOffset(7, 65), samples);
-        ASSERT_LT(cell.sample0 + std::max({t.offset.x, t.offset.y, t.offset.z, t.offset.w}), samples);
+        ASSERT_LT(cell.sample0 + std::max({t.offset.x, t.offset.y, t.offset.z, t.offset.w}),
+                  samples);
         ASSERT_EQ(t.weight.x + t.weight.y + t.weight.z + t.weight.w, 256u);
         ASSERT_TRUE(std::isfinite(cell.decay));
     }
@@ -103,8 +107,11 @@ TEST(Field, BlendEqualsPlainArithmetic)
         std::uint8_t bytes[4][16];
         for (auto& sample : bytes)
             for (auto& byte : sample)
-                byte = trial == 0 ? 255 : trial == 1 ? 0 : static_cast<std::uint8_t>(random.uniform(0, 255.99f));
-        const FieldTetrahedron t = fieldTetrahedron(vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)), 65);
+                byte = trial == 0   ? 255
+                       : trial == 1 ? 0
+                                    : static_cast<std::uint8_t>(random.uniform(0, 255.99f));
+        const FieldTetrahedron t = fieldTetrahedron(
+            vec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)), 65);
         uvec4 s[4];
         std::memcpy(s, bytes, sizeof(bytes));
         const Sh4 blended = fieldBlend(s[0], s[1], s[2], s[3], t.weight);
@@ -161,9 +168,12 @@ TEST(Instance, FieldFrameFollowsTheTransform)
         field.outerRadius = 8;
         const GpuInstance g = makeInstance(input, field);
         const vec3 local = random.direction(); // bounding radii, field axes
-        const vec3 world = input.position + input.scale * (r * (field.center + field.radius * local));
+        const vec3 world =
+            input.position + input.scale * (r * (field.center + field.radius * local));
         const FieldEntity e = instanceField(g);
-        EXPECT_LT(length(affine(e.fieldFromWorld0, e.fieldFromWorld1, e.fieldFromWorld2, world) - local), 5e-5);
+        EXPECT_LT(
+            length(affine(e.fieldFromWorld0, e.fieldFromWorld1, e.fieldFromWorld2, world) - local),
+            5e-5);
         EXPECT_NEAR(length(world - vec3(g.sphere)), g.sphere.w, 1e-4);
         EXPECT_EQ(e.grid.side, 65u);
 

@@ -1,4 +1,5 @@
-// Random functions and rotations for laws of spherical harmonics. Fixed seeds: the same numbers in every run.
+// Random functions and rotations for laws of spherical harmonics. Fixed seeds: the same numbers in
+// every run.
 #pragma once
 
 #include "shaders/shared/sh.h"
@@ -35,7 +36,8 @@ public:
 
     mat3 rotation()
     {
-        return glm::mat3_cast(normalize(quat(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))));
+        return glm::mat3_cast(
+            normalize(quat(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))));
     }
 
 private:
@@ -43,6 +45,9 @@ private:
 };
 
 // The function's value in a direction.
-inline float evaluate(const Sh4& f, const vec3& d) { return shDot(f, shBasis(d)); }
+inline float evaluate(const Sh4& f, const vec3& d)
+{
+    return shDot(f, shBasis(d));
+}
 
 } // namespace penumbra

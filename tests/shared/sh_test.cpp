@@ -15,8 +15,10 @@ double integrate(const F& f)
     double sum = 0;
     for (int i = 0; i < kRows; ++i) {
         for (int j = 0; j < kTurns; ++j) {
-            const double z = -1 + (i + 0.5) * 2 / kRows, phi = (j + 0.5) * 2 * M_PI / kTurns, s = std::sqrt(1 - z * z);
-            sum += f(vec3(s * std::cos(phi), s * std::sin(phi), z)) * (2.0 / kRows) * (2 * M_PI / kTurns);
+            const double z = -1 + (i + 0.5) * 2 / kRows, phi = (j + 0.5) * 2 * M_PI / kTurns,
+                         s = std::sqrt(1 - z * z);
+            sum += f(vec3(s * std::cos(phi), s * std::sin(phi), z)) * (2.0 / kRows) *
+                   (2 * M_PI / kTurns);
         }
     }
     return sum;
@@ -26,7 +28,9 @@ TEST(Sh, BasisIsOrthonormal)
 {
     for (int i = 0; i < 16; ++i)
         for (int j = 0; j <= i; ++j)
-            EXPECT_NEAR(integrate([&](vec3 d) { return shBasis(d).c[i] * shBasis(d).c[j]; }), i == j, 2e-4) << i << ' ' << j;
+            EXPECT_NEAR(integrate([&](vec3 d) { return shBasis(d).c[i] * shBasis(d).c[j]; }),
+                        i == j, 2e-4)
+                << i << ' ' << j;
 }
 
 TEST(Sh, NodesAreADegreeNineRule)
@@ -37,7 +41,8 @@ TEST(Sh, NodesAreADegreeNineRule)
         EXPECT_NEAR(length(vec3(node)), 1, 1e-6);
     }
     EXPECT_NEAR(weights, 4 * M_PI, 1e-5);
-    // Products of three basis functions have degree 9: the rule's sums are the tripling coefficients.
+    // Products of three basis functions have degree 9: the rule's sums are the tripling
+    // coefficients.
     for (int i = 0; i < 16; ++i) {
         Sh4 a{}, b{};
         a.c[i] = 1;
@@ -103,7 +108,8 @@ TEST(Sh, ProductWithOneIsTheIdentity)
         EXPECT_NEAR(same.c[i], f.c[i], 1e-6);
 }
 
-// g = rotate(f): g(w) = f(R^-1 w), the whole range of rotations, those without a unique Euler angle too.
+// g = rotate(f): g(w) = f(R^-1 w), the whole range of rotations, those without a unique Euler angle
+// too.
 TEST(Sh, RotationMovesTheFunction)
 {
     RandomSphere random(5);
@@ -112,9 +118,11 @@ TEST(Sh, RotationMovesTheFunction)
         rotations.push_back(random.rotation());
     for (const vec3 axis : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)})
         for (int quarter = 0; quarter < 4; ++quarter)
-            rotations.push_back(glm::mat3_cast(glm::angleAxis(static_cast<float>(quarter * M_PI / 2), axis)));
+            rotations.push_back(
+                glm::mat3_cast(glm::angleAxis(static_cast<float>(quarter * M_PI / 2), axis)));
     rotations.push_back(glm::mat3_cast(glm::angleAxis(3e-5f, vec3(1, 0, 0))));
-    rotations.push_back(glm::mat3_cast(glm::angleAxis(static_cast<float>(M_PI) - 3e-5f, vec3(1, 0, 0))));
+    rotations.push_back(
+        glm::mat3_cast(glm::angleAxis(static_cast<float>(M_PI) - 3e-5f, vec3(1, 0, 0))));
     for (const mat3& r : rotations) {
         const Sh4 f = random.function();
         const Sh4 g = shRotate(f, shRotation(r));

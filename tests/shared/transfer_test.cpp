@@ -15,7 +15,8 @@ Sh4 one()
     return f;
 }
 
-// A clamped cosine's projection, against numbers: band l of max(0, cos) integrates to A_l sqrt((2l+1)/(4 pi)) on axis.
+// A clamped cosine's projection, against numbers: band l of max(0, cos) integrates to A_l
+// sqrt((2l+1)/(4 pi)) on axis.
 TEST(Transfer, CosineLobeIsTheProjectionOfTheClampedCosine)
 {
     RandomSphere random(1);
@@ -24,7 +25,8 @@ TEST(Transfer, CosineLobeIsTheProjectionOfTheClampedCosine)
     double projected[16] = {};
     constexpr int kSamples = 400000;
     for (int i = 0; i < kSamples; ++i) { // Fibonacci lattice
-        const double z = 1 - (2 * i + 1.0) / kSamples, s = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
+        const double z = 1 - (2 * i + 1.0) / kSamples, s = std::sqrt(1 - z * z),
+                     phi = 2.399963229728653 * i;
         const vec3 d(s * std::cos(phi), s * std::sin(phi), z);
         const Sh4 y = shBasis(d);
         for (int k = 0; k < 16; ++k)
@@ -43,7 +45,8 @@ TEST(Transfer, PhongLobeIsTheProjectionOfThePower)
         double projected[16] = {};
         constexpr int kSamples = 400000;
         for (int i = 0; i < kSamples; ++i) {
-            const double z = 1 - (2 * i + 1.0) / kSamples, s = std::sqrt(1 - z * z), phi = 2.399963229728653 * i;
+            const double z = 1 - (2 * i + 1.0) / kSamples, s = std::sqrt(1 - z * z),
+                         phi = 2.399963229728653 * i;
             const vec3 d(s * std::cos(phi), s * std::sin(phi), z);
             const Sh4 y = shBasis(d);
             const double value = (e + 2) / (2 * M_PI) * std::pow(std::max(0.0f, dot(r, d)), e);
@@ -68,8 +71,9 @@ TEST(Transfer, EnergyOfAnOpenLambertReceiver)
     EXPECT_NEAR(shDot(transferSh(one(), receiver), one()), 1, 1e-5);
 }
 
-// At normal incidence the glossy lobe is cos^(e+1) about the normal and reflects all. Both factors are band-limited before
-// the product, which costs 2.4 % at e = 2; the products themselves are exact.
+// At normal incidence the glossy lobe is cos^(e+1) about the normal and reflects all. Both factors
+// are band-limited before the product, which costs 2.4 % at e = 2; the products themselves are
+// exact.
 TEST(Transfer, EnergyOfAGlossyReceiverAtNormalIncidence)
 {
     RandomSphere random(4);
@@ -84,7 +88,9 @@ TEST(Transfer, EnergyOfAGlossyReceiverAtNormalIncidence)
 // Band 4 of both lobes, against numbers: the integral with P_4 over the sphere.
 TEST(Transfer, PolynomialsAreTheLobesUpToBandFour)
 {
-    const auto exact = [](float e, double t) { return t <= 0 ? 0 : e == 0 ? t : (e + 2) / (2 * M_PI) * std::pow(t, e); };
+    const auto exact = [](float e, double t) {
+        return t <= 0 ? 0 : e == 0 ? t : (e + 2) / (2 * M_PI) * std::pow(t, e);
+    };
     for (const float e : {0.0f, 2.0f, 5.0f}) { // 0: the cosine
         const ZonalPolynomial p = e == 0 ? cosinePolynomial() : phongPolynomial(e);
         for (int band = 0; band <= 5; ++band) {
@@ -101,7 +107,8 @@ TEST(Transfer, PolynomialsAreTheLobesUpToBandFour)
     }
 }
 
-// Light of order 5 and the lobe's band 4 have degree 8 together: the nodes integrate their product exactly.
+// Light of order 5 and the lobe's band 4 have degree 8 together: the nodes integrate their product
+// exactly.
 TEST(Transfer, NodalIrradianceIsExactUpToBandFour)
 {
     RandomSphere random(5);
@@ -112,8 +119,12 @@ TEST(Transfer, NodalIrradianceIsExactUpToBandFour)
         // The light P_4(d . w): its irradiance is A_4 P_4(d . n), A_4 = -pi / 24.
         double sum = 0;
         for (int i = 0; i < 32; ++i)
-            sum += static_cast<double>(kShNodes[i].w) * nodal.v[i] * std::legendre(4u, static_cast<double>(dot(d, vec3(kShNodes[i]))));
-        EXPECT_NEAR(sum * M_PI, -M_PI / 24 * std::legendre(4u, std::clamp(static_cast<double>(dot(d, n)), -1.0, 1.0)), 1e-5);
+            sum += static_cast<double>(kShNodes[i].w) * nodal.v[i] *
+                   std::legendre(4u, static_cast<double>(dot(d, vec3(kShNodes[i]))));
+        EXPECT_NEAR(sum * M_PI,
+                    -M_PI / 24 *
+                        std::legendre(4u, std::clamp(static_cast<double>(dot(d, n)), -1.0, 1.0)),
+                    1e-5);
     }
 }
 

@@ -16,8 +16,10 @@ struct ClusterSphere {
 ClusterSphere worldBounds(const ClusterBounds& bounds, const GpuInstance& g)
 {
     ClusterSphere s;
-    s.center = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.sphere));
-    s.axis = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.cone)) / g.material1.y;
+    s.center =
+        affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.sphere));
+    s.axis = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.cone)) /
+             g.material1.y;
     s.radius = bounds.sphere.w * g.material1.y;
     s.cutoff = bounds.cone.w;
     return s;
@@ -25,10 +27,12 @@ ClusterSphere worldBounds(const ClusterBounds& bounds, const GpuInstance& g)
 
 Receiver makeReceiver(const GpuInstance& g, const uvec4& geometry, const FrameConstants& frame)
 {
-    const vec3 local(uintBitsToFloat(geometry.x), uintBitsToFloat(geometry.y), uintBitsToFloat(geometry.z));
+    const vec3 local(uintBitsToFloat(geometry.x), uintBitsToFloat(geometry.y),
+                     uintBitsToFloat(geometry.z));
     Receiver r;
     r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, local);
-    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, unpackNormal(geometry.w)) *
+    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2,
+                      unpackNormal(geometry.w)) *
                (1.0f / g.material1.y);
     r.mirror = glm::reflect(normalize(r.position - vec3(frame.eye)), r.normal);
     r.glossFraction = g.material.w;
@@ -41,7 +45,8 @@ Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity
     const FieldCell cell = fieldCell(p, entity.grid);
     Sh4 sum{};
     for (uint corner = 0; corner < 8; ++corner) {
-        const Sh4 steps = fieldSteps(samples[cell.sample0 + fieldCornerOffset(corner, entity.grid.side)]);
+        const Sh4 steps =
+            fieldSteps(samples[cell.sample0 + fieldCornerOffset(corner, entity.grid.side)]);
         const float weight = fieldCornerWeight(corner, cell.fraction);
         for (int k = 0; k < 16; ++k)
             sum.c[k] += weight * steps.c[k];
@@ -53,7 +58,8 @@ Sh4 sampleTetrahedral(const std::vector<uvec4>& samples, const FieldEntity& enti
 {
     const FieldCell cell = fieldCell(p, entity.grid);
     const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid.side);
-    const Sh4 steps = fieldBlend(samples[cell.sample0], samples[cell.sample0 + t.offset.y], samples[cell.sample0 + t.offset.z],
+    const Sh4 steps = fieldBlend(samples[cell.sample0], samples[cell.sample0 + t.offset.y],
+                                 samples[cell.sample0 + t.offset.z],
                                  samples[cell.sample0 + t.offset.w], t.weight);
     return fieldVisibility(steps, entity.bandScale * (cell.decay * (1.0f / 256.0f)));
 }
@@ -65,21 +71,26 @@ CpuInstances updateInstances(const SceneData& scene)
     CpuInstances out;
     for (const SceneInstance& instance : scene.instances) {
         const InstanceInput input = instanceInput(scene, instance);
-        out.instances.push_back(makeInstance(input, scene.fields[input.field == kNoField ? 0 : input.field]));
+        out.instances.push_back(
+            makeInstance(input, scene.fields[input.field == kNoField ? 0 : input.field]));
         out.dense.push_back(denseRotation(instanceRotation(out.instances.back())));
     }
     return out;
 }
 
-std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances, const FrameConstants& frame)
+std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances,
+                                          const FrameConstants& frame)
 {
     std::vector<ClusterOccluders> visible;
     std::vector<std::pair<float, std::uint32_t>> near;
     for (std::uint32_t c = 0; c < scene.clusters.size(); ++c) {
         const SceneCluster& cluster = scene.clusters[c];
-        const ClusterSphere s = worldBounds(scene.bounds[cluster.bounds], instances.instances[cluster.instance]);
-        const bool outside = std::any_of(std::begin(frame.frustum), std::end(frame.frustum),
-                                         [&](const vec4& plane) { return sphereOutside(plane, s.center, s.radius); });
+        const ClusterSphere s =
+            worldBounds(scene.bounds[cluster.bounds], instances.instances[cluster.instance]);
+        const bool outside =
+            std::any_of(std::begin(frame.frustum), std::end(frame.frustum), [&](const vec4& plane) {
+                return sphereOutside(plane, s.center, s.radius);
+            });
         if (outside || facesAway(s.center - vec3(frame.eye), s.axis, s.cutoff, s.radius))
             continue;
 
@@ -102,8 +113,9 @@ std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInsta
     return visible;
 }
 
-void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances, const FrameConstants& frame,
-                    const ClusterOccluders& visible, std::span<vec4> radiance)
+void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
+                    const FrameConstants& frame, const ClusterOccluders& visible,
+                    std::span<vec4> radiance)
 {
     const SceneCluster& cluster = scene.clusters[visible.cluster];
     const GpuInstance& self = instances.instances[cluster.instance];
@@ -114,12 +126,15 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
         const Sh4 ownVisibility = selfVisibility(texels.selfVisibility, kSelfVisibilityScale);
         vec3 sum(0);
         if (kernel == Kernel::Literal) {
-            Sh4 transfer = transferSh(shRotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
+            Sh4 transfer = transferSh(
+                shRotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
             for (const std::uint32_t occluder : visible.occluders) {
                 const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1, entity.fieldFromWorld2, receiver.position);
+                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1,
+                                      entity.fieldFromWorld2, receiver.position);
                 const Sh4 visibility = sampleTrilinear(scene.fieldSamples, entity, p);
-                transfer = shProduct(shRotateDense(visibility, instances.dense[occluder]), transfer);
+                transfer =
+                    shProduct(shRotateDense(visibility, instances.dense[occluder]), transfer);
             }
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);
@@ -127,7 +142,8 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             ShNodal transfer = transferNodal(shRotate(ownVisibility, worldFromObject), receiver);
             for (const std::uint32_t occluder : visible.occluders) {
                 const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1, entity.fieldFromWorld2, receiver.position);
+                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1,
+                                      entity.fieldFromWorld2, receiver.position);
                 const Sh4 visibility = sampleTetrahedral(scene.fieldSamples, entity, p);
                 transfer = shMultiply(transfer, shNodes(shRotate(visibility, entity.rotation)));
             }

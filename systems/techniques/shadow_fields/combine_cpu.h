@@ -1,5 +1,6 @@
-// Culling, sorting and both combine kernels on the CPU, compiled from the shaders' own headers: the oracle of the GPU tests,
-// and, on one thread with kernel literal, the paper's own way to run (device cpu-scalar).
+// Culling, sorting and both combine kernels on the CPU, compiled from the shaders' own headers: the
+// oracle of the GPU tests, and, on one thread with kernel literal, the paper's own way to run
+// (device cpu-scalar).
 #pragma once
 
 #include "systems/scene_data.h"
@@ -21,10 +22,13 @@ struct CpuInstances {
 CpuInstances updateInstances(const SceneData& scene);
 
 // As passes cluster_cull and entity_sort, in cluster order.
-std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances, const FrameConstants& frame);
+std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances,
+                                          const FrameConstants& frame);
 
-// As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance` [scene.radianceCount].
-void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances, const FrameConstants& frame,
-                    const ClusterOccluders& cluster, std::span<vec4> radiance);
+// As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance`
+// [scene.radianceCount].
+void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
+                    const FrameConstants& frame, const ClusterOccluders& cluster,
+                    std::span<vec4> radiance);
 
 } // namespace penumbra

@@ -2,7 +2,10 @@
 
 namespace penumbra {
 
-std::string_view kernelName(Kernel kernel) { return kernel == Kernel::Literal ? "literal" : "exact"; }
+std::string_view kernelName(Kernel kernel)
+{
+    return kernel == Kernel::Literal ? "literal" : "exact";
+}
 
 std::optional<Kernel> kernelFromName(std::string_view name)
 {

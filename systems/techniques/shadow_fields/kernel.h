@@ -12,7 +12,7 @@ enum class Kernel : std::uint32_t {
     Exact,   // nodal product and tetrahedral sampling
 };
 
-std::string_view kernelName(Kernel kernel);                    // "literal"
+std::string_view kernelName(Kernel kernel); // "literal"
 std::optional<Kernel> kernelFromName(std::string_view name);
 
 } // namespace penumbra

@@ -1,4 +1,5 @@
-// The passes of a frame on the GPU against their CPU twins, which are compiled from the same headers.
+// The passes of a frame on the GPU against their CPU twins, which are compiled from the same
+// headers.
 #include "systems/frame.h"
 
 #include "runtime/vk/transfer.h"
@@ -51,7 +52,8 @@ protected:
         drawn.visible = take(readBackAs<std::uint32_t>(device(), gpu.buffers().visible));
         drawn.visible.resize(drawn.cull.combineGroups[0]);
         drawn.lists = take(readBackAs<std::uint32_t>(device(), gpu.buffers().lists));
-        drawn.picture = take(readBack(device(), targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
+        drawn.picture =
+            take(readBack(device(), targets.display, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL));
         return drawn;
     }
 
@@ -63,14 +65,17 @@ protected:
         std::vector<vec4> cpu(scene().data.radianceCount);
         double sum = 0, largest = 0, difference = 0;
         std::size_t count = 0;
-        for (const ClusterOccluders& cluster : cullAndSort(scene().data, instances, scene().constants)) {
+        for (const ClusterOccluders& cluster :
+             cullAndSort(scene().data, instances, scene().constants)) {
             combineCluster(kernel, scene().data, instances, scene().constants, cluster, cpu);
             for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
                 const std::size_t i = scene().data.clusters[cluster.cluster].firstRadiance + v;
                 for (int c = 0; c < 3; ++c) {
                     sum += cpu[i][c];
                     largest = std::max(largest, static_cast<double>(cpu[i][c]));
-                    difference = std::max(difference, std::abs(static_cast<double>(cpu[i][c] - drawn.radiance[i][c])));
+                    difference =
+                        std::max(difference,
+                                 std::abs(static_cast<double>(cpu[i][c] - drawn.radiance[i][c])));
                     ++count;
                 }
             }
@@ -101,7 +106,8 @@ TEST_F(FrameTest, InstanceUpdateEqualsTwin)
 TEST_F(FrameTest, CullAndSortEqualTwin)
 {
     const Drawn drawn = draw(Kernel::Exact);
-    const std::vector<ClusterOccluders> twin = cullAndSort(scene().data, updateInstances(scene().data), scene().constants);
+    const std::vector<ClusterOccluders> twin =
+        cullAndSort(scene().data, updateInstances(scene().data), scene().constants);
     EXPECT_LT(twin.size(), scene().data.clusters.size()); // something is culled …
     ASSERT_GT(twin.size(), 10u);                          // … and not everything
     ASSERT_EQ(drawn.visible.size(), twin.size());
@@ -111,7 +117,8 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
     std::uint32_t pairs = 0;
     for (const ClusterOccluders& cluster : twin) {
         ASSERT_TRUE(slotOf.contains(cluster.cluster));
-        const std::uint32_t* list = &drawn.lists[slotOf[cluster.cluster] * (1 + kMaxClusterOccluders)];
+        const std::uint32_t* list =
+            &drawn.lists[slotOf[cluster.cluster] * (1 + kMaxClusterOccluders)];
         EXPECT_EQ(std::vector<std::uint32_t>(list + 1, list + 1 + list[0]), cluster.occluders);
         pairs += list[0];
     }
@@ -120,10 +127,16 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
     EXPECT_EQ(drawn.cull.dropped, 0u);
 }
 
-TEST_F(FrameTest, LiteralEqualsTwin) { expectTwin(Kernel::Literal, 1e-4, false); }
+TEST_F(FrameTest, LiteralEqualsTwin)
+{
+    expectTwin(Kernel::Literal, 1e-4, false);
+}
 
 // A weight of 1/256 may round the other way where the two differ in the last bit of a fraction.
-TEST_F(FrameTest, ExactEqualsTwin) { expectTwin(Kernel::Exact, 3e-3, true); }
+TEST_F(FrameTest, ExactEqualsTwin)
+{
+    expectTwin(Kernel::Exact, 3e-3, true);
+}
 
 TEST_F(FrameTest, FramesRepeatBitByBit)
 {

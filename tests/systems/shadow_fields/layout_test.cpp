@@ -9,7 +9,8 @@
 namespace penumbra {
 namespace {
 
-#define EXPECT_SAME_OFFSET(gpu, Type, member) EXPECT_EQ((gpu).offset(#member), offsetof(Type, member))
+#define EXPECT_SAME_OFFSET(gpu, Type, member)                                                      \
+    EXPECT_EQ((gpu).offset(#member), offsetof(Type, member))
 
 TEST(Layout, InstanceInputAndField)
 {
@@ -36,17 +37,21 @@ TEST(Layout, GpuInstance)
     EXPECT_SAME_OFFSET(g, GpuInstance, worldFromObject0);
     EXPECT_SAME_OFFSET(g, GpuInstance, sphere);
     EXPECT_EQ(g.arrayStride, sizeof(GpuInstance));
-    EXPECT_EQ(spirvStruct(shaderCode("instance_update.comp"), "DenseRotation").arrayStride, sizeof(DenseRotation));
+    EXPECT_EQ(spirvStruct(shaderCode("instance_update.comp"), "DenseRotation").arrayStride,
+              sizeof(DenseRotation));
 }
 
 TEST(Layout, ClustersAndResults)
 {
-    EXPECT_EQ(spirvStruct(shaderCode("cluster_cull.comp"), "ClusterBounds").arrayStride, sizeof(ClusterBounds));
-    EXPECT_EQ(spirvStruct(shaderCode("cluster_cull.comp"), "SceneCluster").arrayStride, sizeof(SceneCluster));
+    EXPECT_EQ(spirvStruct(shaderCode("cluster_cull.comp"), "ClusterBounds").arrayStride,
+              sizeof(ClusterBounds));
+    EXPECT_EQ(spirvStruct(shaderCode("cluster_cull.comp"), "SceneCluster").arrayStride,
+              sizeof(SceneCluster));
     const SpirvStruct cull = spirvStruct(shaderCode("cluster_cull.comp"), "CullResult");
     EXPECT_SAME_OFFSET(cull, CullResult, combineGroups);
     EXPECT_SAME_OFFSET(cull, CullResult, pairs);
-    EXPECT_EQ(spirvStruct(shaderCode("combine_literal.comp"), "ReceiverTexels").arrayStride, sizeof(ReceiverTexels));
+    EXPECT_EQ(spirvStruct(shaderCode("combine_literal.comp"), "ReceiverTexels").arrayStride,
+              sizeof(ReceiverTexels));
 }
 
 TEST(Layout, FrameConstants)

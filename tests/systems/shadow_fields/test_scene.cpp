@@ -17,8 +17,9 @@ MeshAsset finish(MeshAsset mesh, bool bake)
         open.fill(128);
     if (bake) {
         Progress progress("test");
-        BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices,
-                                    {.shells = 12, .side = 17, .directions = 256, .rasterSide = 128}, progress);
+        BakeResult baked =
+            bakeMesh(mesh.positions, mesh.normals, mesh.indices,
+                     {.shells = 12, .side = 17, .directions = 256, .rasterSide = 128}, progress);
         mesh.selfVisibility = std::move(baked.selfVisibility);
         mesh.field = std::move(baked.field);
     }
@@ -40,14 +41,17 @@ MeshAsset makeSphereAsset(float radius, int rows, bool bake)
     for (int i = 0; i <= rows; ++i) {
         for (int j = 0; j <= turns; ++j) {
             const float a = glm::pi<float>() * static_cast<float>(i) / static_cast<float>(rows);
-            const float b = 2 * glm::pi<float>() * static_cast<float>(j) / static_cast<float>(turns);
-            mesh.normals.push_back(vec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)));
+            const float b =
+                2 * glm::pi<float>() * static_cast<float>(j) / static_cast<float>(turns);
+            mesh.normals.push_back(
+                vec3(std::sin(a) * std::cos(b), std::cos(a), std::sin(a) * std::sin(b)));
             mesh.positions.push_back(radius * mesh.normals.back());
         }
     }
     for (int i = 0; i < rows; ++i) {
         for (int j = 0; j < turns; ++j) {
-            const auto a = static_cast<std::uint32_t>(i * (turns + 1) + j), b = a + static_cast<std::uint32_t>(turns) + 1;
+            const auto a = static_cast<std::uint32_t>(i * (turns + 1) + j),
+                       b = a + static_cast<std::uint32_t>(turns) + 1;
             if (i > 0)
                 mesh.indices.insert(mesh.indices.end(), {a, a + 1, b + 1});
             if (i < rows - 1)
@@ -79,7 +83,8 @@ MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake)
         for (std::uint32_t y = 0; y + 1 < stride; ++y) {
             for (std::uint32_t x = 0; x + 1 < stride; ++x) {
                 const std::uint32_t a = first + y * stride + x;
-                mesh.indices.insert(mesh.indices.end(), {a, a + 1, a + stride + 1, a, a + stride + 1, a + stride});
+                mesh.indices.insert(mesh.indices.end(),
+                                    {a, a + 1, a + stride + 1, a, a + stride + 1, a + stride});
             }
         }
     }
@@ -98,7 +103,8 @@ TestScene makeTestScene()
         const auto f = static_cast<float>(i);
         SceneInstance instance;
         instance.mesh = static_cast<std::uint32_t>(i % 2);
-        instance.position = vec3(1.5f * std::cos(2.1f * f), 0.5f + 0.12f * f, 1.4f * std::sin(2.1f * f));
+        instance.position =
+            vec3(1.5f * std::cos(2.1f * f), 0.5f + 0.12f * f, 1.4f * std::sin(2.1f * f));
         instance.scale = 0.6f + 0.08f * f;
         instance.rotation = quaternion(0.9f * f, vec3(1, f, 2));
         instance.material = {vec3(0.8f, 0.5f + 0.04f * f, 0.3f), i % 3 == 0 ? 0.5f : 0.0f, 6};
@@ -110,8 +116,11 @@ TestScene makeTestScene()
     std::vector<vec3> map;
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
-            const vec3 d = equirectDirection(vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) / vec2(width, height));
-            map.push_back(vec3(0.3f) + std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f)))) * vec3(2.0f, 1.6f, 1.2f));
+            const vec3 d =
+                equirectDirection(vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) /
+                                  vec2(width, height));
+            map.push_back(vec3(0.3f) + std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f)))) *
+                                           vec3(2.0f, 1.6f, 1.2f));
         }
     scene.environment = makeEnvironment(width, height, std::move(map));
 
@@ -119,7 +128,8 @@ TestScene makeTestScene()
     for (const MeshAsset& mesh : scene.assets)
         meshes.push_back(&mesh);
     scene.data = buildSceneData(meshes, std::move(instances));
-    scene.view = viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
+    scene.view =
+        viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
     scene.constants = frameConstants(scene.view, environmentLight(scene.environment, 1), 1);
     return scene;
 }

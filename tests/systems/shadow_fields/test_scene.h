@@ -1,4 +1,5 @@
-// A small scene for tests of passes: baked spheres and cubes over a plate, one glossy, under a lopsided sky.
+// A small scene for tests of passes: baked spheres and cubes over a plate, one glossy, under a
+// lopsided sky.
 #pragma once
 
 #include "assets/environment.h"
@@ -7,8 +8,8 @@
 
 namespace penumbra {
 
-// Closed meshes with unit normals, clusters and, with `bake`, self-visibility and a field (small: 12 shells of 17², 256
-// directions).
+// Closed meshes with unit normals, clusters and, with `bake`, self-visibility and a field (small:
+// 12 shells of 17², 256 directions).
 MeshAsset makeSphereAsset(float radius, int rows, bool bake = true);
 MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake = true);
 
