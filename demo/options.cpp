@@ -46,7 +46,8 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     CLI::Option* referenceOption =
         app.add_option("--reference", reference,
                        "ray-trace the last frame with N directions per receiver (1024)")
-            ->expected(0, 1);
+            ->expected(0, 1)
+            ->default_str("1024");
     app.add_option("--kernel", kernel, "literal or exact")
         ->capture_default_str()
         ->check(CLI::IsMember({"literal", "exact"}));

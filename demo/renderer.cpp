@@ -1,5 +1,6 @@
 #include "demo/renderer.h"
 
+#include "runtime/vk/barriers.h"
 #include "runtime/vk/transfer.h"
 
 #include <chrono>
@@ -79,7 +80,10 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     };
     time("cull_sort", [&](const GpuFrame& gpu) { recordCullAndSort(gpu, m_passes, m_scene); });
     time("combine", [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, m_scene, kernel); });
-    time("raster", [&](const GpuFrame& gpu) { recordRaster(gpu, m_passes, m_scene, m_targets); });
+    time("raster", [&](const GpuFrame& gpu) {
+        computeToGraphics(gpu.cmd); // the radiance of the submission before
+        recordRaster(gpu, m_passes, m_scene, m_targets);
+    });
     time("post", [&](const GpuFrame& gpu) { recordPost(gpu, m_passes, m_targets, m_exposure); });
     if (!failed)
         return failed.error();

@@ -22,8 +22,8 @@ ContentMesh makeSpring();      // 0.32 m high, standing
 
 // A plate whose top, at y = 0, is a grid of vertices that can show shadows.
 struct FloorShape {
-    float width = 8, depth = 8; // along x and z, metres
-    float thickness = 0.2f;     // below y = 0, metres
+    float width = 8, depth = 8;     // along x and z, metres
+    float thickness = 0.2f;         // below y = 0, metres
     int cellsX = 160, cellsZ = 160; // 5 cm: contact shadows between vertices are no finer
 };
 ContentMesh makeFloor(const FloorShape& shape = {}); // the origin is the middle of the top

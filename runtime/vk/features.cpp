@@ -19,6 +19,8 @@ struct Row {
     }
 
 constexpr Row kRequired[] = {
+    PENUMBRA_FEATURE(core, drawIndirectFirstInstance,
+                     "an instance's constants are found by its index"),
     PENUMBRA_FEATURE(v12, bufferDeviceAddress, "passes reach their buffers by address"),
     PENUMBRA_FEATURE(v12, scalarBlockLayout, "C++ and GLSL share the same structs"),
     PENUMBRA_FEATURE(v12, timelineSemaphore, "frames in flight are counted on a timeline"),
@@ -31,7 +33,6 @@ constexpr Row kRequired[] = {
 // Enabled where present; Device::features says so. Whoever uses one has a way without it.
 constexpr Row kOptional[] = {
     PENUMBRA_FEATURE(core, multiDrawIndirect, "many meshes in one indirect draw"),
-    PENUMBRA_FEATURE(core, drawIndirectFirstInstance, "instances of an indirect draw"),
     PENUMBRA_FEATURE(core, fillModeNonSolid, "wireframe views"),
     PENUMBRA_FEATURE(core, samplerAnisotropy, "textures"),
     PENUMBRA_FEATURE(v12, drawIndirectCount, "draw counts written by the GPU"),

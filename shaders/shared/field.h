@@ -31,7 +31,8 @@ struct FieldCell {
 // Octahedral map of a direction (any length but 0) to [0, 1]^2.
 PENUMBRA_FN vec2 octahedralUv(vec3 d)
 {
-    const float scale = 1.0f / (abs(d.x) + abs(d.y) + abs(d.z));
+    const float scale =
+        1.0f / max(abs(d.x) + abs(d.y) + abs(d.z), 1e-20f); // the centre has a uv too
     vec2 p = vec2(d.x * scale, d.y * scale);
     if (d.z < 0.0f)
         p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
@@ -67,14 +68,16 @@ PENUMBRA_FN FieldCell fieldCell(vec3 p, FieldGrid grid)
 
     const float last = float(grid.side - 1u);
     const vec2 at = octahedralUv(p) * last;
-    const vec2 node = vec2(min(floor(at.x), last - 1.0f), min(floor(at.y), last - 1.0f));
+    const vec2 node =
+        vec2(clamp(floor(at.x), 0.0f, last - 1.0f), clamp(floor(at.y), 0.0f, last - 1.0f));
 
     FieldCell cell;
     // Through int: lavapipe converts float to uint much slower.
     cell.sample0 = grid.firstSample +
                    (uint(int(shell0)) * grid.side + uint(int(node.y))) * grid.side +
                    uint(int(node.x));
-    cell.fraction = vec3(at.x - node.x, at.y - node.y, inside - shell0);
+    cell.fraction =
+        clamp(vec3(at.x - node.x, at.y - node.y, inside - shell0), vec3(0.0f), vec3(1.0f));
     cell.decay = fieldDecay(r2) * clamp(grid.lastShell - shell, 0.0f, 1.0f);
     return cell;
 }

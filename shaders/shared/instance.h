@@ -52,7 +52,7 @@ struct GpuInstance {
     vec4 gamma1beta; // … sin gamma .yz, cos beta .xy
     vec4 beta;       // cos beta .z, sin beta .xyz
     vec4 alpha0;     // cos alpha .xyz, sin alpha .x
-    vec4 alpha1grid; // sin alpha .yz, bits of firstSample, bits of side
+    vec4 alpha1grid; // sin alpha .yz, firstSample and side, whole numbers
     vec4 bandScale;
     vec4 shells; // shellScale, shellBias, lastShell, influence radius (world, metres; 0: not an
                  // occluder)
@@ -147,8 +147,7 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
     g.gamma1beta = vec4(s.gamma.s.y, s.gamma.s.z, s.beta.c.x, s.beta.c.y);
     g.beta = vec4(s.beta.c.z, s.beta.s.x, s.beta.s.y, s.beta.s.z);
     g.alpha0 = vec4(s.alpha.c, s.alpha.s.x);
-    g.alpha1grid =
-        vec4(s.alpha.s.y, s.alpha.s.z, uintBitsToFloat(f.firstSample), uintBitsToFloat(f.side));
+    g.alpha1grid = vec4(s.alpha.s.y, s.alpha.s.z, float(f.firstSample), float(f.side));
     g.bandScale = f.bandScale;
     g.shells = vec4(shellScale, -shellScale * log2(f.innerRadius), float(f.shells - 1u),
                     i.field == kNoField ? 0.0f : i.scale * f.radius * f.outerRadius);
@@ -183,8 +182,8 @@ PENUMBRA_FN FieldEntity instanceField(GpuInstance g)
     e.fieldFromWorld1 = g.fieldFromWorld1;
     e.fieldFromWorld2 = g.fieldFromWorld2;
     e.rotation = instanceRotation(g);
-    e.grid.firstSample = floatBitsToUint(g.alpha1grid.z);
-    e.grid.side = floatBitsToUint(g.alpha1grid.w);
+    e.grid.firstSample = uint(int(g.alpha1grid.z));
+    e.grid.side = uint(int(g.alpha1grid.w));
     e.grid.shellScale = g.shells.x;
     e.grid.shellBias = g.shells.y;
     e.grid.lastShell = g.shells.z;

@@ -108,13 +108,16 @@ PENUMBRA_FN ShTurn shTurn(float cosine, float sine)
 PENUMBRA_FN ShRotation shRotation(mat3 r)
 {
     const float cosBeta = clamp(r[2][2], -1.0f, 1.0f);
-    const float sinBeta = sqrt(max(1.0f - cosBeta * cosBeta, 0.0f));
+    const float sin2 =
+        r[2][0] * r[2][0] + r[2][1] * r[2][1]; // exact near 0, where 1 - cos^2 is not
+    const float sinBeta = sqrt(sin2);
     ShRotation rotation;
     rotation.beta = shTurn(cosBeta, sinBeta);
-    // Below this sine the two turns about z cannot be told apart: all goes into gamma.
-    if (sinBeta > 1e-4f) {
-        const float a = inversesqrt(r[2][0] * r[2][0] + r[2][1] * r[2][1]);
-        const float g = inversesqrt(r[0][2] * r[0][2] + r[1][2] * r[1][2]);
+    // Below this the two turns about z cannot be told apart: all goes into gamma.
+    const float sin2Gamma = r[0][2] * r[0][2] + r[1][2] * r[1][2];
+    if (min(sin2, sin2Gamma) > 1e-8f) {
+        const float a = inversesqrt(sin2);
+        const float g = inversesqrt(sin2Gamma);
         rotation.alpha = shTurn(r[2][0] * a, r[2][1] * a);
         rotation.gamma = shTurn(-r[0][2] * g, r[1][2] * g);
     } else {

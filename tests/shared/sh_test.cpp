@@ -1,4 +1,4 @@
-#include "shaders/shared/sh.h"
+#include "shaders/shared/instance.h"
 
 #include "tests/shared/random_sphere.h"
 
@@ -123,6 +123,9 @@ TEST(Sh, RotationMovesTheFunction)
     rotations.push_back(glm::mat3_cast(glm::angleAxis(3e-5f, vec3(1, 0, 0))));
     rotations.push_back(
         glm::mat3_cast(glm::angleAxis(static_cast<float>(M_PI) - 3e-5f, vec3(1, 0, 0))));
+    // Half turns whose matrix rounds to cos = -0.99999988 with a sine of exactly 0.
+    rotations.push_back(rotationMatrix(vec4(std::sqrt(0.5f), std::sqrt(0.5f), 0, 0)));
+    rotations.push_back(rotationMatrix(vec4(std::sqrt(0.5f), -std::sqrt(0.5f), 0, 0)));
     for (const mat3& r : rotations) {
         const Sh4 f = random.function();
         const Sh4 g = shRotate(f, shRotation(r));
