@@ -53,14 +53,15 @@ ClusterQuality measureClusters(const MeshAsset& mesh)
         high = glm::max(high, p);
     }
     const float bounding = 0.5f * length(high - low);
-    const std::vector<MeshCluster> clusters = buildClusters(mesh.positions, mesh.indices);
+    const std::vector<MeshCluster> clusters =
+        buildClusters(mesh.positions, mesh.normals, mesh.indices);
     double radius = 0;
     double cutoff = 0;
     double coneless = 0;
     for (const MeshCluster& cluster : clusters) {
         radius += cluster.radius / bounding;
-        cutoff += cluster.coneCutoff;
-        coneless += cluster.coneCutoff <= 0 ? 1 : 0;
+        cutoff += cluster.faces.cutoff;
+        coneless += cluster.faces.cutoff <= 0 ? 1 : 0;
     }
     const auto count = static_cast<double>(clusters.size());
     ClusterQuality quality;

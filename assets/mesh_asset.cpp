@@ -1,6 +1,7 @@
 #include "assets/mesh_asset.h"
 
 #include <algorithm>
+#include <span>
 
 namespace penumbra {
 
@@ -46,27 +47,25 @@ Sphere boundingSphere(const std::vector<vec3>& points)
     return best;
 }
 
-MeshCluster boundCluster(const std::vector<vec3>& points, const std::vector<vec3>& faceNormals)
+NormalCone boundNormals(std::span<const vec3> normals)
 {
-    const Sphere sphere = boundingSphere(points);
-    MeshCluster cluster{sphere.center, sphere.radius * kRadiusSlack};
     vec3 sum{0};
-    for (const vec3 normal : faceNormals)
+    for (const vec3 normal : normals)
         sum += normal;
-    if (const float size = length(sum);
-        size > 1e-3f * static_cast<float>(faceNormals.size()) && size > 0) {
-        cluster.coneAxis = sum / size;
-        cluster.coneCutoff = 1;
-        for (const vec3 normal : faceNormals)
-            cluster.coneCutoff = std::min(cluster.coneCutoff, dot(normal, cluster.coneAxis));
-        cluster.coneCutoff = std::max(cluster.coneCutoff - 1e-5f, -1.0f);
-    }
-    return cluster;
+    const float size = length(sum);
+    if (size <= 1e-3f * static_cast<float>(normals.size()) || !(size > 0))
+        return {};
+    NormalCone cone{sum / size, 1};
+    for (const vec3 normal : normals)
+        cone.cutoff = std::min(cone.cutoff, dot(normal, cone.axis));
+    cone.cutoff = std::max(cone.cutoff - 1e-5f, -1.0f);
+    return cone;
 }
 
 } // namespace
 
 std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
+                                       const std::vector<vec3>& normals,
                                        const std::vector<std::uint32_t>& indices)
 {
     const std::size_t clusterCount = (positions.size() + kClusterVertices - 1) / kClusterVertices;
@@ -98,10 +97,10 @@ std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
     std::vector<vec3> points;
     std::vector<vec3> faceNormals;
     for (std::size_t i = 0; i < clusterCount; ++i) {
-        const auto first = positions.begin() + static_cast<std::ptrdiff_t>(i * kClusterVertices);
-        points.assign(first, positions.begin() +
-                                 static_cast<std::ptrdiff_t>(
-                                     std::min((i + 1) * kClusterVertices, positions.size())));
+        const std::size_t first = i * kClusterVertices;
+        const std::size_t count = std::min<std::size_t>(kClusterVertices, positions.size() - first);
+        const auto own = std::span(positions).subspan(first, count);
+        points.assign(own.begin(), own.end());
         faceNormals.clear();
         for (std::uint32_t t = begins[i]; t < begins[i + 1]; ++t) {
             const vec3 a = positions[indices[corners[t]]];
@@ -112,14 +111,16 @@ std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
             if (const float size = length(normal); size > 0)
                 faceNormals.push_back(normal / size);
         }
-        clusters[i] = boundCluster(points, faceNormals);
+        const Sphere sphere = boundingSphere(points);
+        clusters[i] = {sphere.center, sphere.radius * kRadiusSlack, boundNormals(faceNormals),
+                       boundNormals(std::span(normals).subspan(first, count))};
     }
     return clusters;
 }
 
 void updateDerived(MeshAsset& mesh)
 {
-    mesh.clusters = buildClusters(mesh.positions, mesh.indices);
+    mesh.clusters = buildClusters(mesh.positions, mesh.normals, mesh.indices);
     mesh.boundsMin = mesh.boundsMax = mesh.positions.empty() ? vec3{0} : mesh.positions.front();
     for (const vec3 position : mesh.positions) {
         mesh.boundsMin = glm::min(mesh.boundsMin, position);

@@ -23,13 +23,19 @@ using SelfVisibility = std::array<std::uint8_t, 16>;
 PENUMBRA_CONST float kSelfVisibilityScale =
     1.78f / 127.0f; // a blocked hemisphere has |c_0| = sqrt(pi) = 1.7725
 
+// All directions within an angle of an axis.
+struct NormalCone {
+    vec3 axis{0};      // the mean direction
+    float cutoff = -1; // cosine of the largest angle between axis and direction; -1: no cone
+};
+
 // 64 consecutive vertices (fewer in the last cluster). Bounds cover every triangle that touches one
 // of them, so that a cluster is dropped only when none of its triangles can be seen.
 struct MeshCluster {
     vec3 center{0}; // object space, metres
     float radius = 0;
-    vec3 coneAxis{0};      // the mean of the face normals
-    float coneCutoff = -1; // cosine of the largest angle between axis and face normal; -1: no cone
+    NormalCone faces;    // face normals: where the cluster can be seen from
+    NormalCone vertices; // vertex normals: what its receivers can be lit from
 };
 
 struct MeshMaterial {
@@ -56,12 +62,13 @@ PENUMBRA_CONST std::uint32_t kMaxMeshTriangles = 8u << 20;
 PENUMBRA_CONST std::uint32_t kMaxNameBytes = 256;
 PENUMBRA_CONST float kMaxGlossExponent = 1e5f;
 
-// Bounds of the clusters for positions and indices as they stand. Indices must be below
-// positions.size(). A cluster whose triangles face all ways, or that has none, gets no cone.
+// Bounds of the clusters for a mesh as it stands. Indices must be below positions.size(). Normals
+// that point all ways, or none at all, give no cone.
 std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
+                                       const std::vector<vec3>& normals,
                                        const std::vector<std::uint32_t>& indices);
 
-// Sets clusters and bounds from positions and indices.
+// Sets clusters and bounds from positions, normals and indices.
 void updateDerived(MeshAsset& mesh);
 
 // Every invariant above but clusters and bounds, on untrusted values: sizes that agree and keep the

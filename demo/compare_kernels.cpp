@@ -65,7 +65,7 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
                     return passes.error();
                 times[k].add("combine", passes->at("combine"));
                 shared.add("raster", passes->at("raster"));
-                shared.add("cullSort", passes->at("cull_sort"));
+                shared.add("cullSort", passes->at("cluster_cull") + passes->at("entity_sort"));
                 if (repeat == 0) {
                     Result<std::vector<vec4>> radiance = renderer.radiance();
                     Result<CullResult> cull = renderer.cullResult();

@@ -127,8 +127,8 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
 Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptions& options)
 {
     SceneData data = extractScene(scene.world, scene.assets);
-    Result<std::unique_ptr<Renderer>> made = Renderer::create(
-        device, scene, std::move(data), {.extent = {options.width, options.height}});
+    Result<std::unique_ptr<Renderer>> made =
+        Renderer::create(device, scene, std::move(data), {options.width, options.height});
     if (!made)
         return made.error();
     Renderer& renderer = **made;
@@ -192,7 +192,8 @@ Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptio
     if (options.reference) {
         const std::filesystem::path out =
             options.out.empty() ? std::filesystem::path("out") : options.out;
-        return runReference(renderer, scene, view, {*options.reference, options.kernel, out});
+        return runReference(renderer, scene, view,
+                            {*options.reference, options.kernel, options.cpuScalar, out});
     }
     return {};
 }

@@ -40,19 +40,22 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     app.add_option("--frames", options.frames, "stop after N frames (headless: 240)");
     app.add_flag("--headless", options.headless,
                  "no window: render to files at 60 frames per second of scene time");
-    app.add_option("--out", options.out, "folder for PNG files and reference.json");
-    app.add_option("--record", options.record, "write an MP4 film");
-    app.add_option("--benchmark", options.benchmark, "write timings as JSON");
+    CLI::Option* outOption =
+        app.add_option("--out", options.out, "folder for PNG files and reference.json");
+    CLI::Option* recordOption = app.add_option("--record", options.record, "write an MP4 film");
+    CLI::Option* benchmarkOption =
+        app.add_option("--benchmark", options.benchmark, "write timings as JSON");
     CLI::Option* referenceOption =
         app.add_option("--reference", reference,
                        "ray-trace the last frame with N directions per receiver (1024)")
             ->expected(0, 1)
             ->default_str("1024");
-    app.add_option("--kernel", kernel, "literal or exact")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"literal", "exact"}));
-    app.add_option("--compare-kernels", options.compareKernels,
-                   "time all kernels on the same frames, write JSON");
+    CLI::Option* kernelOption = app.add_option("--kernel", kernel, "literal or exact")
+                                    ->capture_default_str()
+                                    ->check(CLI::IsMember({"literal", "exact"}));
+    CLI::Option* compareOption =
+        app.add_option("--compare-kernels", options.compareKernels,
+                       "time all kernels on the same frames, write JSON; a run of its own");
     app.add_option("--receivers", receivers, "what receives light")
         ->capture_default_str()
         ->check(CLI::IsMember({"vertex"}));
@@ -68,6 +71,11 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
             throw CLI::ValidationError(
                 "--size",
                 "'" + size + "' is not WxH with sides of 16 to 8192, for example 1280x720");
+        for (const CLI::Option* other :
+             {outOption, recordOption, benchmarkOption, referenceOption, kernelOption})
+            if (compareOption->count() > 0 && other->count() > 0)
+                throw CLI::ValidationError("--compare-kernels",
+                                           "is a run of its own: leave out " + other->get_name());
         if (reference < 16 || reference > 65536)
             throw CLI::ValidationError("--reference", "directions per receiver: 16 to 65536");
     } catch (const CLI::ParseError& error) {

@@ -1,5 +1,6 @@
 #include "demo/reference_run.h"
 
+#include "demo/cpu_scalar.h"
 #include "demo/image/flip.h"
 #include "demo/reference/errors.h"
 #include "demo/reference/reference.h"
@@ -72,7 +73,12 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     using Clock = std::chrono::steady_clock;
     const SceneData& data = renderer.scene().data();
     const auto fieldStart = Clock::now();
-    if (Result<void> drawn = renderer.drawFrame(view, options.kernel); !drawn)
+    if (options.cpuScalar) {
+        const CpuFrame cpu = combineOnCpu(Kernel::Literal, data, renderer.constants(view));
+        if (Result<void> set = renderer.setRadiance(cpu.radiance); !set)
+            return set;
+    }
+    if (Result<void> drawn = renderer.drawFrame(view, options.kernel, !options.cpuScalar); !drawn)
         return drawn;
     const double fieldSeconds = std::chrono::duration<double>(Clock::now() - fieldStart).count();
     Result<Image8> fields = renderer.capture();
@@ -144,7 +150,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
 
     const nlohmann::ordered_json json{
         {"scene", scene.name},
-        {"kernel", kernelName(options.kernel)},
+        {"kernel", options.cpuScalar ? "cpu-scalar" : kernelName(options.kernel)},
         {"receivers", receivers.receivers.size()},
         {"samples", options.samples},
         {"meanUnshadowed", errors.meanUnshadowed},

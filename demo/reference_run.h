@@ -8,8 +8,8 @@ namespace penumbra {
 struct ReferenceRunOptions {
     std::uint32_t samples = 1024;
     Kernel kernel = Kernel::Exact;
-    std::filesystem::path
-        out; // folder for reference.json, fields.png, reference.png, error.png, flip.png
+    bool cpuScalar = false;    // combine on the CPU, with kernel literal
+    std::filesystem::path out; // folder for reference.json and the pictures
 };
 
 // Draws the frame of `view` and compares every visible receiver. Prints a summary line.

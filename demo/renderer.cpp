@@ -9,7 +9,7 @@
 namespace penumbra {
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const DemoScene& scene,
-                                                   SceneData data, const RendererOptions& options)
+                                                   SceneData data, VkExtent2D extent)
 {
     std::unique_ptr<Renderer> renderer(new Renderer(device));
     Result<FramePasses> passes = createFramePasses(device);
@@ -25,7 +25,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const D
         scene.ground ? aboveGround(scene.environment) : scene.environment, scene.intensity);
     renderer->m_backgroundIntensity = scene.intensity;
     renderer->m_exposure = scene.exposure;
-    if (Result<void> sized = renderer->resize(options.extent); !sized)
+    if (Result<void> sized = renderer->resize(extent); !sized)
         return sized.error();
     return renderer;
 }
@@ -78,7 +78,10 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
         if (!done)
             failed = done;
     };
-    time("cull_sort", [&](const GpuFrame& gpu) { recordCullAndSort(gpu, m_passes, m_scene); });
+    time("instance_update",
+         [&](const GpuFrame& gpu) { recordInstanceUpdate(gpu, m_passes, m_scene); });
+    time("cluster_cull", [&](const GpuFrame& gpu) { recordClusterCull(gpu, m_passes, m_scene); });
+    time("entity_sort", [&](const GpuFrame& gpu) { recordEntitySort(gpu, m_passes, m_scene); });
     time("combine", [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, m_scene, kernel); });
     time("raster", [&](const GpuFrame& gpu) {
         computeToGraphics(gpu.cmd); // the radiance of the submission before

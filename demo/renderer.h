@@ -12,16 +12,11 @@
 
 namespace penumbra {
 
-struct RendererOptions {
-    VkExtent2D extent{1280, 720};
-    std::uint32_t framesInFlight = 2;
-};
-
 class Renderer {
 public:
     // `scene`'s environment and the instances of `data`; the device outlives the renderer.
     static Result<std::unique_ptr<Renderer>> create(const Device& device, const DemoScene& scene,
-                                                    SceneData data, const RendererOptions& options);
+                                                    SceneData data, VkExtent2D extent);
 
     // Begins a frame, records it up to the display image, and leaves the command buffer open: end
     // it with endFrame, or record a copy of display() first.

@@ -3,6 +3,7 @@
 #include "demo/scenes/falling.h"
 #include "runtime/file.h"
 
+#include <algorithm>
 #include <fmt/ranges.h>
 
 namespace penumbra {
@@ -18,6 +19,11 @@ std::span<const SceneEntry> sceneEntries()
 
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options)
 {
+    std::error_code ec;
+    if (!std::filesystem::is_directory(options.assets, ec))
+        return Error{fmt::format("no folder of compiled assets at {}; build the project, or name "
+                                 "the folder with --assets",
+                                 options.assets.string())};
     std::vector<std::string_view> names;
     for (const SceneEntry& entry : sceneEntries()) {
         if (entry.name == name)
@@ -28,8 +34,19 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
         fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
 }
 
-Result<Environment> loadEnvironment(const std::filesystem::path& path)
+Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name)
 {
+    const std::filesystem::path path = assets / (name + ".env");
+    std::error_code ec;
+    if (!std::filesystem::exists(path, ec)) {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(assets, ec))
+            if (entry.path().extension() == ".env")
+                names.push_back(entry.path().stem().string());
+        std::sort(names.begin(), names.end());
+        return Error{fmt::format("no environment is called '{}'; {} has: {}", name, assets.string(),
+                                 fmt::join(names, ", "))};
+    }
     constexpr std::uint64_t kMaxBytes = 16u << 20; // a .env of the largest map takes 1 MiB
     Result<std::vector<std::byte>> bytes = readFile(path, kMaxBytes);
     if (!bytes)

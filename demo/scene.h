@@ -42,6 +42,7 @@ std::span<const SceneEntry> sceneEntries();
 // Error: no such scene, the message lists all; or an asset that is missing or damaged.
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
 
-Result<Environment> loadEnvironment(const std::filesystem::path& path);
+// `name` of `assets`, without .env. Error: no such map, the message lists all; or a damaged one.
+Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name);
 
 } // namespace penumbra

@@ -145,9 +145,8 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(device, *show.scene, extractScene(show.scene->world, show.scene->assets),
-                         {.extent = extent});
+    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(
+        device, *show.scene, extractScene(show.scene->world, show.scene->assets), extent);
     if (!renderer)
         return renderer.error();
     show.renderer = std::move(*renderer);
@@ -219,9 +218,8 @@ Result<void> runWindow(const DemoOptions& options)
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();
-    for (std::uint32_t frames = 0;
-         !glfwWindowShouldClose(window) && (options.frames == 0 || frames < options.frames);
-         ++frames) {
+    std::uint32_t frames = 0;
+    while (!glfwWindowShouldClose(window) && (options.frames == 0 || frames < options.frames)) {
         glfwPollEvents();
         const VkExtent2D extent = framebufferExtent(window);
         if (extent.width == 0 || extent.height == 0) { // minimised
@@ -265,6 +263,7 @@ Result<void> runWindow(const DemoOptions& options)
         if (Result<void> shown = swapchain->present(); !shown)
             return shown;
         title.frame(window, show->scene->name, controls.kernel);
+        ++frames;
     }
     if (Result<void> idle = show->renderer->ring().waitIdle(); !idle)
         return idle;

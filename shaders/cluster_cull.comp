@@ -25,8 +25,8 @@ void main()
         if (sphereOutside(frame.frustum[p], center, radius))
             return;
     const vec3 axis =
-        linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, b.cone.xyz) / g.material1.y;
-    if (facesAway(center - frame.eye.xyz, axis, b.cone.w, radius))
+        linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, b.faces.xyz) / g.material1.y;
+    if (facesAway(center - frame.eye.xyz, axis, b.faces.w, radius))
         return;
 
     const uint slot = atomicAdd(cull.combineGroups[0], 1u);

@@ -28,7 +28,7 @@ void main()
     const ShRotation worldFromObject = instanceRotation(self);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
-        const Receiver receiver = makeReceiver(self, texelFetch(receiverTexels, texel));
+        const Receiver receiver = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
         const Sh4 visibility = selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale);
         position[v] = receiver.position;
         transfer[v] = transferNodal(shRotate(visibility, worldFromObject), receiver);
@@ -38,9 +38,9 @@ void main()
         const uint occluder = texelFetch(listTexels, int(list + 1u + i)).x;
         const FieldEntity entity = instanceField(loadInstance(occluder));
         [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
-            const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1, entity.fieldFromWorld2, position[v]);
+            const vec3 p = fieldPoint(entity, position[v]);
             const FieldCell cell = fieldCell(p, entity.grid);
-            const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid.side);
+            const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
             const Sh4 steps = fieldBlend(texelFetch(fieldTexels, int(cell.sample0)),
                                          texelFetch(fieldTexels, int(cell.sample0 + t.offset.y)),
                                          texelFetch(fieldTexels, int(cell.sample0 + t.offset.z)),

@@ -21,19 +21,20 @@ void main()
 
     const GpuInstance self = instances[cluster.instance];
     const ReceiverTexels texels = receivers[cluster.firstReceiver + gl_LocalInvocationID.x];
-    const Receiver receiver = makeReceiver(self, texels.geometry);
-    Sh4 transfer = transferSh(shRotateDense(selfVisibility(texels.selfVisibility, kSelfScale), denseRotations[cluster.instance]), receiver);
+    const Receiver receiver = makeReceiver(self, texels.geometry, frame.eye.xyz);
+    const Sh4 ownVisibility = selfVisibility(texels.selfVisibility, kSelfScale);
+    Sh4 transfer = transferSh(shRotateDense(ownVisibility, denseRotations[cluster.instance]), receiver);
 
     for (uint i = 0u; i < count; ++i) {
         const uint occluder = lists[list + 1u + i];
         const FieldEntity entity = instanceField(instances[occluder]);
-        const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1, entity.fieldFromWorld2, receiver.position);
+        const vec3 p = fieldPoint(entity, receiver.position);
         const FieldCell cell = fieldCell(p, entity.grid);
         Sh4 sum;
         [[unroll]] for (int k = 0; k < 16; ++k)
             sum.c[k] = 0.0;
         [[unroll]] for (uint corner = 0u; corner < 8u; ++corner) {
-            const Sh4 steps = fieldSteps(fieldSamples[cell.sample0 + fieldCornerOffset(corner, entity.grid.side)]);
+            const Sh4 steps = fieldSteps(fieldSamples[cell.sample0 + fieldCornerOffset(corner, entity.grid)]);
             const float weight = fieldCornerWeight(corner, cell.fraction);
             [[unroll]] for (int k = 0; k < 16; ++k)
                 sum.c[k] += weight * steps.c[k];

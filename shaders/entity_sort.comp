@@ -23,19 +23,19 @@ void main()
     const vec3 center = affine(self.worldFromObject0, self.worldFromObject1, self.worldFromObject2, b.sphere.xyz);
     const float radius = b.sphere.w * self.material1.y;
     const vec3 axis =
-        linear(self.worldFromObject0, self.worldFromObject1, self.worldFromObject2, b.cone.xyz) / self.material1.y;
+        linear(self.worldFromObject0, self.worldFromObject1, self.worldFromObject2, b.vertices.xyz) / self.material1.y;
 
     float key[kMaxClusterOccluders];
     uint id[kMaxClusterOccluders];
     uint count = 0u, dropped = 0u;
     for (uint i = 0u; i < frame.instanceCount; ++i) {
-        const float influence = texelFetch(instanceTexels, int(i * kGpuInstanceTexels) + 9).w;
-        const vec4 sphere = texelFetch(instanceTexels, int(i * kGpuInstanceTexels) + 15);
+        const float influence = texelFetch(instanceTexels, int(i * kGpuInstanceTexels) + 3).w;
+        const vec4 sphere = texelFetch(instanceTexels, int(i * kGpuInstanceTexels));
         const vec3 to = sphere.xyz - center;
         const float distance = length(to);
         if (i == cluster.instance || influence == 0.0 || distance - radius > influence)
             continue;
-        if (belowHorizon(to, sphere.w, axis, b.cone.w, radius))
+        if (belowHorizon(to, sphere.w, axis, b.vertices.w, radius))
             continue;
         uint at = min(count, kMaxClusterOccluders);
         if (count == kMaxClusterOccluders) {

@@ -30,33 +30,15 @@ GpuInstance loadInstance(uint instance)
 {
     const int row = int(instance * kGpuInstanceTexels);
     GpuInstance g;
-    g.fieldFromWorld0 = texelFetch(instanceTexels, row);
-    g.fieldFromWorld1 = texelFetch(instanceTexels, row + 1);
-    g.fieldFromWorld2 = texelFetch(instanceTexels, row + 2);
-    g.gamma0 = texelFetch(instanceTexels, row + 3);
-    g.gamma1beta = texelFetch(instanceTexels, row + 4);
-    g.beta = texelFetch(instanceTexels, row + 5);
-    g.alpha0 = texelFetch(instanceTexels, row + 6);
-    g.alpha1grid = texelFetch(instanceTexels, row + 7);
-    g.bandScale = texelFetch(instanceTexels, row + 8);
-    g.shells = texelFetch(instanceTexels, row + 9);
-    g.worldFromObject0 = texelFetch(instanceTexels, row + 10);
-    g.worldFromObject1 = texelFetch(instanceTexels, row + 11);
-    g.worldFromObject2 = texelFetch(instanceTexels, row + 12);
-    g.material = texelFetch(instanceTexels, row + 13);
-    g.material1 = texelFetch(instanceTexels, row + 14);
-    g.sphere = texelFetch(instanceTexels, row + 15);
+    g.sphere = texelFetch(instanceTexels, row);
+    g.alphaBeta = texelFetch(instanceTexels, row + 1);
+    g.gammaShells = texelFetch(instanceTexels, row + 2);
+    g.grid = texelFetch(instanceTexels, row + 3);
+    g.bandScale = texelFetch(instanceTexels, row + 4);
+    g.worldFromObject0 = texelFetch(instanceTexels, row + 5);
+    g.worldFromObject1 = texelFetch(instanceTexels, row + 6);
+    g.worldFromObject2 = texelFetch(instanceTexels, row + 7);
+    g.material = texelFetch(instanceTexels, row + 8);
+    g.material1 = texelFetch(instanceTexels, row + 9);
     return g; // rows that the caller does not use are not fetched: the compiler drops them
-}
-
-Receiver makeReceiver(GpuInstance g, uvec4 geometry)
-{
-    Receiver r;
-    r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, uintBitsToFloat(geometry.xyz));
-    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, unpackNormal(geometry.w)) *
-               (1.0 / g.material1.y);
-    r.mirror = reflect(normalize(r.position - frame.eye.xyz), r.normal);
-    r.glossFraction = g.material.w;
-    r.glossExponent = g.material1.x;
-    return r;
 }

@@ -50,15 +50,6 @@ void dispatchCovering(VkCommandBuffer cmd, std::uint32_t items, std::uint32_t gr
     vkCmdDispatch(cmd, groupCount(items, groupSize), 1, 1);
 }
 
-// Moved instances -> the constants that every receiver reads.
-void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                          std::uint32_t changed)
-{
-    const GpuZone zone(gpu.cmd, "instance_update");
-    bindAndPush(gpu.cmd, passes.instanceUpdate, scene.set(gpu.slot), changed);
-    dispatchCovering(gpu.cmd, changed, 16);
-}
-
 } // namespace
 
 void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene,
@@ -67,11 +58,10 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
 {
     FrameConstants frame = constants;
     frame.denseRotations = options.kernel == Kernel::Literal ? 1 : 0;
-    const std::uint32_t changed = scene.writeFrame(gpu.slot, frame);
-    if (changed > 0)
-        recordInstanceUpdate(gpu, passes, scene, changed);
-    computeToCompute(gpu.cmd);
-    recordCullAndSort(gpu, passes, scene);
+    scene.writeFrame(gpu.slot, frame);
+    recordInstanceUpdate(gpu, passes, scene);
+    recordClusterCull(gpu, passes, scene);
+    recordEntitySort(gpu, passes, scene);
     if (options.combine)
         recordCombine(gpu, passes, scene, options.kernel);
     computeToGraphics(gpu.cmd);
@@ -80,25 +70,35 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
     recordPost(gpu, passes, targets, options.exposure);
 }
 
-void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
+void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
 {
+    const GpuZone zone(gpu.cmd, "instance_update");
+    if (const std::uint32_t changed = scene.slot(gpu.slot).changedCount; changed > 0) {
+        bindAndPush(gpu.cmd, passes.instanceUpdate, scene.slot(gpu.slot).set, changed);
+        dispatchCovering(gpu.cmd, changed, 16);
+    }
+    computeToCompute(gpu.cmd);
+}
+
+void recordClusterCull(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
+{
+    const GpuZone zone(gpu.cmd, "cluster_cull");
     const GpuSceneBuffers& b = scene.buffers();
     const CullResult nothing{{0, 1, 1}, {0, 1, 1}, 0, 0};
     const VkBufferCopy whole{.size = b.drawCommands.bytes};
     vkCmdUpdateBuffer(gpu.cmd, b.cull.handle, 0, sizeof(nothing), &nothing);
     vkCmdCopyBuffer(gpu.cmd, b.drawTemplate.handle, b.drawCommands.handle, 1, &whole);
     transferToCompute(gpu.cmd);
-    {
-        const GpuZone zone(gpu.cmd, "cluster_cull");
-        bind(gpu.cmd, passes.clusterCull, scene.set(gpu.slot), nullptr, 0);
-        dispatchCovering(gpu.cmd, static_cast<std::uint32_t>(scene.data().clusters.size()), 64);
-    }
+    bind(gpu.cmd, passes.clusterCull, scene.slot(gpu.slot).set, nullptr, 0);
+    dispatchCovering(gpu.cmd, static_cast<std::uint32_t>(scene.data().clusters.size()), 64);
     computeToIndirect(gpu.cmd);
-    {
-        const GpuZone zone(gpu.cmd, "entity_sort");
-        bind(gpu.cmd, passes.entitySort, scene.set(gpu.slot), nullptr, 0);
-        vkCmdDispatchIndirect(gpu.cmd, b.cull.handle, offsetof(CullResult, sortGroups));
-    }
+}
+
+void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
+{
+    const GpuZone zone(gpu.cmd, "entity_sort");
+    bind(gpu.cmd, passes.entitySort, scene.slot(gpu.slot).set, nullptr, 0);
+    vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle, offsetof(CullResult, sortGroups));
     computeToIndirect(gpu.cmd);
 }
 
@@ -106,7 +106,7 @@ void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScen
                    Kernel kernel)
 {
     const GpuZone zone(gpu.cmd, "combine");
-    bind(gpu.cmd, passes.combine(kernel), scene.set(gpu.slot), nullptr, 0);
+    bind(gpu.cmd, passes.combine(kernel), scene.slot(gpu.slot).set, nullptr, 0);
     vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle,
                           offsetof(CullResult, combineGroups));
 }
@@ -121,7 +121,7 @@ void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene
                     kDepthTarget);
     const GpuSceneBuffers& b = scene.buffers();
     beginRendering(gpu.cmd, targets);
-    bind(gpu.cmd, passes.raster, scene.set(gpu.slot), nullptr, 0);
+    bind(gpu.cmd, passes.raster, scene.slot(gpu.slot).set, nullptr, 0);
     vkCmdBindIndexBuffer(gpu.cmd, b.indices.handle, 0, VK_INDEX_TYPE_UINT32);
     for (std::size_t i = 0; i < scene.data().instances.size(); ++i) {
         const MeshRange& mesh = scene.data().meshes[scene.data().instances[i].mesh];
@@ -132,7 +132,7 @@ void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene
         vkCmdDrawIndexedIndirect(gpu.cmd, b.drawCommands.handle,
                                  i * sizeof(VkDrawIndexedIndirectCommand), 1, 0);
     }
-    bind(gpu.cmd, passes.background, scene.set(gpu.slot), nullptr, 0);
+    bind(gpu.cmd, passes.background, scene.slot(gpu.slot).set, nullptr, 0);
     vkCmdDraw(gpu.cmd, 3, 1, 0, 0);
     vkCmdEndRendering(gpu.cmd);
     transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kColorTarget,

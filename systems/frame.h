@@ -46,7 +46,9 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
                  const FrameTargets& targets);
 
 // The parts. Each takes and leaves the targets as the next one wants them.
-void recordCullAndSort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
+void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
+void recordClusterCull(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
+void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
                    Kernel kernel);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,

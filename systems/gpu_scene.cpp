@@ -51,6 +51,13 @@ struct Maker {
             return {};
         if (desc.bytes == 0)
             desc.bytes = bytes.size();
+        const std::uint32_t range = device.properties.limits.maxStorageBufferRange;
+        if ((desc.usage & kStorageUse) != 0 && desc.bytes > range) {
+            result = Error{fmt::format("the scene's {} take {} bytes, the device binds {}; use "
+                                       "fewer instances, meshes or fields",
+                                       desc.name, desc.bytes, range)};
+            return {};
+        }
         Result<Buffer> buffer =
             bytes.empty() ? createBuffer(device, desc) : createBufferWith(device, desc, bytes);
         if (!buffer) {
@@ -126,6 +133,11 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
                     "a scene has at least one instance");
     GpuScene scene;
     const std::uint64_t instances = data.instances.size(), clusters = data.clusters.size();
+    const std::uint32_t groups = device.properties.limits.maxComputeWorkGroupCount[0];
+    if (clusters > groups)
+        return Error{fmt::format("the scene has {} clusters of {} receivers, the device dispatches "
+                                 "{}; use fewer instances or coarser meshes",
+                                 clusters, kClusterReceivers, groups)};
 
     Maker maker{device};
     GpuSceneBuffers& b = scene.m_buffers;
@@ -223,7 +235,7 @@ void GpuScene::touchAll()
         setInstance(i, m_data.instances[i]);
 }
 
-std::uint32_t GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constants)
+void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constants)
 {
     GpuSceneSlot& slot = m_slots[slotIndex];
     FrameConstants frame = constants;
@@ -236,9 +248,8 @@ std::uint32_t GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants
         std::memcpy(slot.changed.mapped + i * 4, &m_changed[i], 4);
         m_isChanged[m_changed[i]] = false;
     }
-    const auto count = static_cast<std::uint32_t>(m_changed.size());
+    slot.changedCount = static_cast<std::uint32_t>(m_changed.size());
     m_changed.clear();
-    return count;
 }
 
 } // namespace penumbra

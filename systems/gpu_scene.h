@@ -30,29 +30,29 @@ struct GpuSceneSlot {
     Buffer frame;   // FrameConstants
     Buffer inputs;  // [instanceCount] InstanceInput of the changed instances, packed
     Buffer changed; // [instanceCount] their indices
+    std::uint32_t changedCount = 0;
     VkDescriptorSet set = VK_NULL_HANDLE;
 };
 
 class GpuScene {
 public:
     // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, or a scene larger
-    // than the device's buffers.
+    // than the device can bind or dispatch.
     static Result<GpuScene> create(const Device& device, SceneData data,
                                    const Environment& environment, std::uint32_t framesInFlight);
 
     // The instance moves or changes its material from the next frame on.
     void setInstance(std::uint32_t index, const SceneInstance& instance);
 
-    // Writes what the frame of `slot` reads: constants and changed instances. Returns the number of
-    // changed ones.
-    std::uint32_t writeFrame(std::uint32_t slot, const FrameConstants& constants);
+    // Writes what the frame of `slot` reads: constants and changed instances.
+    void writeFrame(std::uint32_t slot, const FrameConstants& constants);
 
     // All instances count as changed: after another kernel was chosen, which needs other constants.
     void touchAll();
 
     [[nodiscard]] const SceneData& data() const { return m_data; }
     [[nodiscard]] const GpuSceneBuffers& buffers() const { return m_buffers; }
-    [[nodiscard]] VkDescriptorSet set(std::uint32_t slot) const { return m_slots[slot].set; }
+    [[nodiscard]] const GpuSceneSlot& slot(std::uint32_t index) const { return m_slots[index]; }
 
 private:
     SceneData m_data;

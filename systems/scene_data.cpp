@@ -44,8 +44,11 @@ void appendField(const ShadowField& field, SceneData& scene)
     input.outerRadius = field.outerRadius;
     scene.fields.push_back(input);
 
+    scene.fieldSamples.resize(scene.fieldSamples.size() + std::size_t{side} * side * input.shells);
+    uvec4* const samples = scene.fieldSamples.data() + input.firstSample;
     const std::uint8_t* shell = field.texels.data();
-    for (const std::uint32_t from : field.shellSides) {
+    for (std::uint32_t s = 0; s < input.shells; ++s) {
+        const std::uint32_t from = field.shellSides[s];
         const float step = static_cast<float>(from - 1) / static_cast<float>(side - 1);
         for (std::uint32_t y = 0; y < side; ++y) {
             for (std::uint32_t x = 0; x < side; ++x) {
@@ -62,9 +65,8 @@ void appendField(const ShadowField& field, SceneData& scene)
                                         (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
                     sample[k] = static_cast<std::uint8_t>(std::lround(value));
                 }
-                uvec4 texel;
-                std::memcpy(&texel, sample, sizeof(texel));
-                scene.fieldSamples.push_back(texel);
+                std::memcpy(&samples[(std::size_t{y} * side + x) * input.shells + s], sample,
+                            sizeof(sample));
             }
         }
         shell += static_cast<std::size_t>(from) * from * 16;
@@ -85,8 +87,9 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
         scene.indices.insert(scene.indices.end(), mesh->indices.begin(), mesh->indices.end());
         range.firstBounds = static_cast<std::uint32_t>(scene.bounds.size());
         for (const MeshCluster& cluster : mesh->clusters)
-            scene.bounds.push_back(
-                {vec4(cluster.center, cluster.radius), vec4(cluster.coneAxis, cluster.coneCutoff)});
+            scene.bounds.push_back({vec4(cluster.center, cluster.radius),
+                                    vec4(cluster.faces.axis, cluster.faces.cutoff),
+                                    vec4(cluster.vertices.axis, cluster.vertices.cutoff)});
         if (mesh->field) {
             range.field = static_cast<std::uint32_t>(scene.fields.size());
             appendField(*mesh->field, scene);

@@ -48,23 +48,27 @@ inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int s
     // Barycentric coordinate a_k grows by dx_k per pixel in x and dy_k in y; depth is linear as
     // well.
     const float invArea = 1 / area;
-    float row[3], dx[3], dy[3], depthRow = 0, depthDx = 0, depthDy = 0;
+    float corner[3], dx[3], dy[3], depthCorner = 0, depthDx = 0, depthDy = 0;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         dx[k] = (t.y[i] - t.y[j]) * invArea;
         dy[k] = (t.x[j] - t.x[i]) * invArea;
-        row[k] =
+        corner[k] =
             dx[k] * (static_cast<float>(x0) - t.x[i]) + dy[k] * (static_cast<float>(y0) - t.y[i]);
-        depthRow += row[k] * t.z[k];
+        depthCorner += corner[k] * t.z[k];
         depthDx += dx[k] * t.z[k];
         depthDy += dy[k] * t.z[k];
     }
     const Lanes lane = {0, 1, 2, 3, 4, 5, 6, 7};
     for (int y = y0; y <= y1; ++y) {
+        const auto down = static_cast<float>(y - y0);
+        const float row[3] = {corner[0] + down * dy[0], corner[1] + down * dy[1],
+                              corner[2] + down * dy[2]};
+        const float depthRow = depthCorner + down * depthDy;
         for (int x = x0; x <= x1; x += kLanes) {
             const Lanes step = lane + static_cast<float>(x - x0);
-            // Only lanes up to x1 count; coverage is inclusive on all edges, so that no line slips
-            // between triangles.
+            // Only lanes up to x1 count. Coverage is inclusive on all edges: a line on an edge hits
+            // both triangles, but for the rounding of these few operations.
             const auto covered = (row[0] + step * dx[0] >= 0.0f) & (row[1] + step * dx[1] >= 0.0f) &
                                  (row[2] + step * dx[2] >= 0.0f) &
                                  (step <= static_cast<float>(x1 - x0));
@@ -79,9 +83,6 @@ inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int s
             std::memcpy(near + pixel, &nearest, sizeof(Lanes));
             std::memcpy(far + pixel, &farthest, sizeof(Lanes));
         }
-        for (int k = 0; k < 3; ++k)
-            row[k] += dy[k];
-        depthRow += depthDy;
     }
 }
 

@@ -1,5 +1,7 @@
 #include "demo/image/image.h"
 
+#include "shaders/shared/tone_map.h"
+
 #include <algorithm>
 
 namespace penumbra {
@@ -22,11 +24,6 @@ Image8 makeImage(std::uint32_t width, std::uint32_t height, std::array<std::uint
     for (std::size_t i = 0; i < image.rgba.size(); ++i)
         image.rgba[i] = rgba[i % 4];
     return image;
-}
-
-float srgbFromLinear(float linear)
-{
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
 float linearFromSrgb(float srgb)

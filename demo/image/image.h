@@ -29,8 +29,7 @@ Image8 makeImage(std::uint32_t width, std::uint32_t height,
 Image8 imageFromLinear(std::uint32_t width, std::uint32_t height, std::span<const vec3> linear,
                        float exposure = 1.0f);
 
-// One sRGB component from 0 … 1 linear, and back (IEC 61966-2-1).
-float srgbFromLinear(float linear);
+// One sRGB component to linear, both 0 … 1 (IEC 61966-2-1); back: shaders/shared/tone_map.h.
 float linearFromSrgb(float srgb);
 
 // PNG, RGBA, 8 bits. The same picture gives the same bytes; nothing half-written is left. Sides 1 …

@@ -111,7 +111,7 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
                      .pitch = 0.52f,
                      .fieldOfView = 0.62f};
     Result<Environment> environment = loadEnvironment(
-        options.assets / ((options.environment.empty() ? "sunset" : options.environment) + ".env"));
+        options.assets, options.environment.empty() ? "sunset" : options.environment);
     if (!environment)
         return environment.error();
     scene->environment = std::move(*environment);

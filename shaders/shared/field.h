@@ -9,7 +9,9 @@
 #include "shaders/shared/sh.h"
 PENUMBRA_BEGIN
 
-// Grid of a field with one side on all shells, as the GPU holds it.
+// Grid of a field with one side on all shells, as the GPU holds it: samples [y][x][shell], so that
+// a cell's nodes on neighbouring shells share a cache line, and the cells that one cluster meets
+// lie close together (8 % of kernel `exact`).
 struct FieldGrid {
     uint firstSample;
     uint side;        // nodes per edge of the octahedral map
@@ -17,6 +19,7 @@ struct FieldGrid {
                       // bounding radii
     float shellBias;
     float lastShell; // shell count - 1
+    uint shells;
 };
 
 // A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] along u,
@@ -64,20 +67,14 @@ PENUMBRA_FN FieldCell fieldCell(vec3 p, FieldGrid grid)
     const float r2 = max(dot(p, p), 1e-12f);
     const float shell = 0.5f * log2(r2) * grid.shellScale + grid.shellBias;
     const float inside = clamp(shell, 0.0f, grid.lastShell);
-    const float shell0 = min(floor(inside), grid.lastShell - 1.0f);
-
-    const float last = float(grid.side - 1u);
-    const vec2 at = octahedralUv(p) * last;
-    const vec2 node =
-        vec2(clamp(floor(at.x), 0.0f, last - 1.0f), clamp(floor(at.y), 0.0f, last - 1.0f));
+    // Through int: lavapipe converts float to uint much slower, and rounds towards 0 for free.
+    const vec2 at = octahedralUv(p) * float(int(grid.side) - 1);
+    const int x = min(int(at.x), int(grid.side) - 2), y = min(int(at.y), int(grid.side) - 2);
+    const int s = min(int(inside), int(grid.shells) - 2);
 
     FieldCell cell;
-    // Through int: lavapipe converts float to uint much slower.
-    cell.sample0 = grid.firstSample +
-                   (uint(int(shell0)) * grid.side + uint(int(node.y))) * grid.side +
-                   uint(int(node.x));
-    cell.fraction =
-        clamp(vec3(at.x - node.x, at.y - node.y, inside - shell0), vec3(0.0f), vec3(1.0f));
+    cell.sample0 = grid.firstSample + (uint(y) * grid.side + uint(x)) * grid.shells + uint(s);
+    cell.fraction = vec3(at.x - float(x), at.y - float(y), inside - float(s));
     cell.decay = fieldDecay(r2) * clamp(grid.lastShell - shell, 0.0f, 1.0f);
     return cell;
 }
@@ -89,15 +86,15 @@ struct FieldTetrahedron {
     uvec4 weight;
 };
 
-PENUMBRA_FN FieldTetrahedron fieldTetrahedron(vec3 f, uint side)
+PENUMBRA_FN FieldTetrahedron fieldTetrahedron(vec3 f, FieldGrid grid)
 {
-    const uint stepY = side, stepZ = side * side;
+    const uint stepX = grid.shells, stepY = grid.side * grid.shells;
     const float high = max(max(f.x, f.y), f.z), low = min(min(f.x, f.y), f.z);
     const float middle = f.x + f.y + f.z - high - low;
     const bool xy = f.x >= f.y, yz = f.y >= f.z, xz = f.x >= f.z;
-    const uint steepest = xy && xz ? 1u : (yz && !xy ? stepY : stepZ);
-    const uint flattest = yz && xz ? stepZ : (xy ? stepY : 1u);
-    const uint all = 1u + stepY + stepZ;
+    const uint steepest = xy && xz ? stepX : (yz && !xy ? stepY : 1u);
+    const uint flattest = yz && xz ? 1u : (xy ? stepY : stepX);
+    const uint all = stepX + stepY + 1u;
     const uint w1 = uint(int(high * 256.0f + 0.5f));
     const uint w2 = uint(int(middle * 256.0f + 0.5f));
     const uint w3 = uint(int(low * 256.0f + 0.5f));
@@ -152,9 +149,9 @@ PENUMBRA_FN Sh4 fieldSteps(uvec4 s)
 }
 
 // Corner i of the cell (bit 0: u, bit 1: v, bit 2: shell) and its trilinear weight.
-PENUMBRA_FN uint fieldCornerOffset(uint corner, uint side)
+PENUMBRA_FN uint fieldCornerOffset(uint corner, FieldGrid grid)
 {
-    return (corner & 1u) + ((corner >> 1u) & 1u) * side + (corner >> 2u) * side * side;
+    return ((corner & 1u) + ((corner >> 1u) & 1u) * grid.side) * grid.shells + (corner >> 2u);
 }
 
 PENUMBRA_FN float fieldCornerWeight(uint corner, vec3 f)

@@ -12,7 +12,7 @@ PENUMBRA_CONST uint kClusterReceivers =
 PENUMBRA_CONST uint kMaxClusterOccluders =
     32u; // list entries per cluster; farther ones are dropped and counted
 PENUMBRA_CONST uint kSortGroup = 16u;         // clusters per workgroup of entity_sort: one per lane
-PENUMBRA_CONST uint kGpuInstanceTexels = 16u; // vec4 rows of a GpuInstance
+PENUMBRA_CONST uint kGpuInstanceTexels = 10u; // vec4 rows of a GpuInstance
 
 // Written by the CPU when the entity changed.
 struct InstanceInput {
@@ -43,31 +43,28 @@ struct FieldInput {
 };
 
 // Written by pass instance_update, read as rows of a texel buffer by the combine kernels and as
-// per-instance vertex attributes by pass raster.
+// per-instance vertex attributes by pass raster. What a kernel needs of an occluder is in the first
+// five rows: on lavapipe a row costs as much to read as 60 multiplications, so angles are kept
+// instead of matrices.
 struct GpuInstance {
-    vec4 fieldFromWorld0; // rows of the map to bounding radii in the field's axes
-    vec4 fieldFromWorld1;
-    vec4 fieldFromWorld2;
-    vec4 gamma0;     // ShRotation world from object: cos gamma .xyz, sin gamma .x …
-    vec4 gamma1beta; // … sin gamma .yz, cos beta .xy
-    vec4 beta;       // cos beta .z, sin beta .xyz
-    vec4 alpha0;     // cos alpha .xyz, sin alpha .x
-    vec4 alpha1grid; // sin alpha .yz, firstSample and side, whole numbers
+    vec4 sphere;    // of the field: centre and bounding radius, world, metres
+    vec4 alphaBeta; // world from object = Rz(alpha) Ry(beta) Rz(gamma): cos, sin of alpha, of beta
+    vec4 gammaShells; // cos gamma, sin gamma, shellScale, shellBias
+    vec4 grid; // firstSample, side, shell count: whole numbers; influence radius (world, metres; 0:
+               // not an occluder)
     vec4 bandScale;
-    vec4 shells; // shellScale, shellBias, lastShell, influence radius (world, metres; 0: not an
-                 // occluder)
     vec4 worldFromObject0;
     vec4 worldFromObject1;
     vec4 worldFromObject2;
     vec4 material;  // albedo, glossFraction
     vec4 material1; // glossExponent, scale, 0, 0
-    vec4 sphere;    // of the field: centre and bounding radius, world, metres
 };
 
 // Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
 struct ClusterBounds {
-    vec4 sphere; // centre, radius
-    vec4 cone;   // axis, cutoff
+    vec4 sphere;   // centre, radius
+    vec4 faces;    // cone of the face normals: axis, cutoff
+    vec4 vertices; // cone of the vertex normals: axis, cutoff
 };
 
 // A cluster of an instance.
@@ -110,9 +107,8 @@ struct DenseRotation {
 
 // What a combine kernel needs of an occluder.
 struct FieldEntity {
-    vec4 fieldFromWorld0;
-    vec4 fieldFromWorld1;
-    vec4 fieldFromWorld2;
+    vec3 center;         // world, metres
+    mat3 radiiFromWorld; // rotation and scale to the field's axes and bounding radii
     ShRotation rotation;
     FieldGrid grid;
     vec4 bandScale;
@@ -134,23 +130,17 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
 {
     const mat3 r = rotationMatrix(i.rotation); // columns: object axes in world
     const vec3 center = i.position + i.scale * (r * f.center);
-    const float toRadii = 1.0f / (i.scale * f.radius);
     const float octaves = log2(f.outerRadius / f.innerRadius);
     const float shellScale = float(f.shells - 1u) / octaves;
     const ShRotation s = shRotation(r);
 
     GpuInstance g;
-    g.fieldFromWorld0 = toRadii * vec4(r[0], -dot(r[0], center));
-    g.fieldFromWorld1 = toRadii * vec4(r[1], -dot(r[1], center));
-    g.fieldFromWorld2 = toRadii * vec4(r[2], -dot(r[2], center));
-    g.gamma0 = vec4(s.gamma.c, s.gamma.s.x);
-    g.gamma1beta = vec4(s.gamma.s.y, s.gamma.s.z, s.beta.c.x, s.beta.c.y);
-    g.beta = vec4(s.beta.c.z, s.beta.s.x, s.beta.s.y, s.beta.s.z);
-    g.alpha0 = vec4(s.alpha.c, s.alpha.s.x);
-    g.alpha1grid = vec4(s.alpha.s.y, s.alpha.s.z, float(f.firstSample), float(f.side));
+    g.sphere = vec4(center, i.scale * f.radius);
+    g.alphaBeta = vec4(s.alpha.c.x, s.alpha.s.x, s.beta.c.x, s.beta.s.x);
+    g.gammaShells = vec4(s.gamma.c.x, s.gamma.s.x, shellScale, -shellScale * log2(f.innerRadius));
+    g.grid = vec4(float(f.firstSample), float(f.side), float(f.shells),
+                  i.field == kNoField ? 0.0f : i.scale * f.radius * f.outerRadius);
     g.bandScale = f.bandScale;
-    g.shells = vec4(shellScale, -shellScale * log2(f.innerRadius), float(f.shells - 1u),
-                    i.field == kNoField ? 0.0f : i.scale * f.radius * f.outerRadius);
     g.worldFromObject0 =
         vec4(i.scale * r[0][0], i.scale * r[1][0], i.scale * r[2][0], i.position.x);
     g.worldFromObject1 =
@@ -159,36 +149,48 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
         vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
     g.material = vec4(i.albedo, i.glossFraction);
     g.material1 = vec4(i.glossExponent, i.scale, 0.0f, 0.0f);
-    g.sphere = vec4(center, i.scale * f.radius);
     return g;
 }
 
 PENUMBRA_FN ShRotation instanceRotation(GpuInstance g)
 {
     ShRotation r;
-    r.gamma.c = vec3(g.gamma0.x, g.gamma0.y, g.gamma0.z);
-    r.gamma.s = vec3(g.gamma0.w, g.gamma1beta.x, g.gamma1beta.y);
-    r.beta.c = vec3(g.gamma1beta.z, g.gamma1beta.w, g.beta.x);
-    r.beta.s = vec3(g.beta.y, g.beta.z, g.beta.w);
-    r.alpha.c = vec3(g.alpha0.x, g.alpha0.y, g.alpha0.z);
-    r.alpha.s = vec3(g.alpha0.w, g.alpha1grid.x, g.alpha1grid.y);
+    r.gamma = shTurn(g.gammaShells.x, g.gammaShells.y);
+    r.beta = shTurn(g.alphaBeta.z, g.alphaBeta.w);
+    r.alpha = shTurn(g.alphaBeta.x, g.alphaBeta.y);
     return r;
 }
 
 PENUMBRA_FN FieldEntity instanceField(GpuInstance g)
 {
+    const float cosAlpha = g.alphaBeta.x, sinAlpha = g.alphaBeta.y;
+    const float cosBeta = g.alphaBeta.z, sinBeta = g.alphaBeta.w;
+    const float toRadii = 1.0f / g.sphere.w;
+    const float cosGamma = g.gammaShells.x * toRadii, sinGamma = g.gammaShells.y * toRadii;
     FieldEntity e;
-    e.fieldFromWorld0 = g.fieldFromWorld0;
-    e.fieldFromWorld1 = g.fieldFromWorld1;
-    e.fieldFromWorld2 = g.fieldFromWorld2;
+    e.center = vec3(g.sphere.x, g.sphere.y, g.sphere.z);
+    // Column by column: the field's coordinates of the world's axes.
+    e.radiiFromWorld = mat3(
+        vec3(cosAlpha * cosBeta * cosGamma - sinAlpha * sinGamma,
+             -cosAlpha * cosBeta * sinGamma - sinAlpha * cosGamma, cosAlpha * sinBeta * toRadii),
+        vec3(sinAlpha * cosBeta * cosGamma + cosAlpha * sinGamma,
+             cosAlpha * cosGamma - sinAlpha * cosBeta * sinGamma, sinAlpha * sinBeta * toRadii),
+        vec3(-sinBeta * cosGamma, sinBeta * sinGamma, cosBeta * toRadii));
     e.rotation = instanceRotation(g);
-    e.grid.firstSample = uint(int(g.alpha1grid.z));
-    e.grid.side = uint(int(g.alpha1grid.w));
-    e.grid.shellScale = g.shells.x;
-    e.grid.shellBias = g.shells.y;
-    e.grid.lastShell = g.shells.z;
+    e.grid.firstSample = uint(int(g.grid.x));
+    e.grid.side = uint(int(g.grid.y));
+    e.grid.shells = uint(int(g.grid.z));
+    e.grid.shellScale = g.gammaShells.z;
+    e.grid.shellBias = g.gammaShells.w;
+    e.grid.lastShell = g.grid.z - 1.0f;
     e.bandScale = g.bandScale;
     return e;
+}
+
+// A point of the world relative to the field's centre, field axes, unit: bounding radii.
+PENUMBRA_FN vec3 fieldPoint(FieldEntity e, vec3 world)
+{
+    return e.radiiFromWorld * (world - e.center);
 }
 
 PENUMBRA_FN vec3 affine(vec4 row0, vec4 row1, vec4 row2, vec3 p)
@@ -256,7 +258,7 @@ static_assert(sizeof(penumbra::InstanceInput) == 64 &&
 static_assert(sizeof(penumbra::FieldInput) == 64 &&
               offsetof(penumbra::FieldInput, firstSample) == 32);
 static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
-static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 160);
+static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
 static_assert(sizeof(penumbra::FrameConstants) == 1024 &&

@@ -5,7 +5,7 @@
 // = albedo times the integral of L V f. The same f is ray-traced in demo/reference.
 #ifndef PENUMBRA_SHADERS_SHARED_TRANSFER_H
 #define PENUMBRA_SHADERS_SHARED_TRANSFER_H
-#include "shaders/shared/field.h"
+#include "shaders/shared/instance.h"
 PENUMBRA_BEGIN
 
 // A receiver in memory: two uvec4. Vertex shaders read the position as an attribute, stride 32,
@@ -34,6 +34,22 @@ PENUMBRA_FN vec3 unpackNormal(uint bits)
 {
     return octahedralDirection(vec2(float(int(bits & 0xffffu)), float(int(bits >> 16u))) *
                                (1.0f / 65535.0f));
+}
+
+// `eye`: world.
+PENUMBRA_FN Receiver makeReceiver(GpuInstance g, uvec4 geometry, vec3 eye)
+{
+    const vec3 local =
+        vec3(uintBitsToFloat(geometry.x), uintBitsToFloat(geometry.y), uintBitsToFloat(geometry.z));
+    Receiver r;
+    r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, local);
+    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2,
+                      unpackNormal(geometry.w)) *
+               (1.0f / g.material1.y);
+    r.mirror = reflect(normalize(r.position - eye), r.normal);
+    r.glossFraction = g.material.w;
+    r.glossExponent = g.material1.x;
+    return r;
 }
 
 // Object space. `scale` is assets/mesh_asset.h's kSelfVisibilityScale.

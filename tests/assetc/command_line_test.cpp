@@ -1,36 +1,19 @@
 // The contract of the command line: exit codes, one clear message, nothing half-written.
 #include "tests/assetc/gltf_fixture.h"
-#include "tests/assetc/temporary_folder.h"
+#include "tests/support/program.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 namespace penumbra {
 
 namespace {
 
-struct Outcome {
-    int code;
-    std::string out, err;
-};
-
-std::string readText(const std::filesystem::path& path)
-{
-    const auto bytes = readFile(path, 1 << 20);
-    return bytes ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()) : "";
-}
-
 class CommandLine : public testing::Test {
 protected:
     Outcome run(const std::string& arguments) const
     {
-        const std::string command =
-            fmt::format("'{}' {} > '{}' 2> '{}'", PENUMBRA_ASSETC, arguments,
-                        (folder / "out").string(), (folder / "err").string());
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(folder / "out"),
-                readText(folder / "err")};
+        return runProgram(PENUMBRA_ASSETC, arguments, folder);
     }
     [[nodiscard]] std::string at(const std::string& name) const
     {

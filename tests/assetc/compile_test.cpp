@@ -1,7 +1,7 @@
 #include "assetc/compile.h"
 #include "tests/assetc/gltf_fixture.h"
-#include "tests/assetc/temporary_folder.h"
 #include "tests/assets/sample_assets.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -2,8 +2,8 @@
 #include "assets/draco_mesh.h"
 #include "assets/glb.h"
 #include "tests/assetc/gltf_fixture.h"
-#include "tests/assetc/temporary_folder.h"
 #include "tests/assets/sample_assets.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "assetc/import/import.h"
 #include "assets/glb.h"
 #include "tests/assetc/gltf_fixture.h"
-#include "tests/assetc/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <random>

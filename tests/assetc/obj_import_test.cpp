@@ -1,5 +1,5 @@
 #include "assetc/import/import.h"
-#include "tests/assetc/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 

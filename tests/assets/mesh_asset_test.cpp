@@ -22,8 +22,8 @@ TEST(MeshClusters, BoundsHoldEveryTouchingTriangle)
                 mesh.clusters[mesh.indices[t + static_cast<std::size_t>(corner)] / 64];
             for (const vec3 point : {a, b, c})
                 EXPECT_LE(length(point - cluster.center), cluster.radius);
-            if (cluster.coneCutoff > -1) {
-                EXPECT_GE(dot(normal, cluster.coneAxis), cluster.coneCutoff);
+            if (cluster.faces.cutoff > -1) {
+                EXPECT_GE(dot(normal, cluster.faces.axis), cluster.faces.cutoff);
             }
         }
     }
@@ -39,30 +39,47 @@ TEST(MeshClusters, SphereIsTight)
 TEST(MeshClusters, FlatPatchHasANarrowCone)
 {
     const std::vector<vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
-    const auto clusters = buildClusters(positions, {0, 1, 2});
+    const std::vector<vec3> normals(3, vec3(0, 1, 0));
+    const auto clusters = buildClusters(positions, normals, {0, 1, 2});
     ASSERT_EQ(clusters.size(), 1u);
-    EXPECT_NEAR(clusters[0].coneAxis.y, 1, 1e-6f);
-    EXPECT_GT(clusters[0].coneCutoff, 0.999f);
+    EXPECT_NEAR(clusters[0].faces.axis.y, 1, 1e-6f);
+    EXPECT_GT(clusters[0].faces.cutoff, 0.999f);
 }
 
 TEST(MeshClusters, OppositeFacesHaveNoCone)
 {
     const std::vector<vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
-    const auto clusters = buildClusters(positions, {0, 1, 2, 0, 2, 1});
-    EXPECT_EQ(clusters[0].coneCutoff, -1);
+    const std::vector<vec3> normals(3, vec3(0, 1, 0));
+    const auto clusters = buildClusters(positions, normals, {0, 1, 2, 0, 2, 1});
+    EXPECT_EQ(clusters[0].faces.cutoff, -1);
 }
 
 TEST(MeshClusters, DegenerateTrianglesAndLoneVerticesAreHarmless)
 {
     const std::vector<vec3> positions(70, vec3{1, 2, 3});
-    const auto clusters = buildClusters(positions, {0, 1, 2});
+    const std::vector<vec3> normals(70, vec3(0, 1, 0));
+    const auto clusters = buildClusters(positions, normals, {0, 1, 2});
     ASSERT_EQ(clusters.size(), 2u);
     for (const MeshCluster& cluster : clusters) {
         EXPECT_EQ(cluster.center, (vec3{1, 2, 3}));
         EXPECT_EQ(cluster.radius, 0);
-        EXPECT_EQ(cluster.coneCutoff, -1);
+        EXPECT_EQ(cluster.faces.cutoff, -1);
     }
-    EXPECT_TRUE(buildClusters({}, {}).empty());
+    EXPECT_TRUE(buildClusters({}, {}, {}).empty());
+}
+
+// Imported normals may lean away from the faces: the receivers' cone must hold them, or an occluder
+// that lights them is dropped as under their horizon.
+TEST(MeshClusters, LeaningVertexNormalsWidenTheirOwnConeOnly)
+{
+    const std::vector<vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, -1}};
+    const std::vector<vec3> normals = {normalize(vec3(-1, 1, 0)), normalize(vec3(1, 1, 0)),
+                                       vec3(0, 1, 0)};
+    const MeshCluster cluster = buildClusters(positions, normals, {0, 1, 2})[0];
+    EXPECT_GT(cluster.faces.cutoff, 0.999f);
+    EXPECT_NEAR(cluster.vertices.cutoff, std::sqrt(0.5f), 1e-4f);
+    for (const vec3 normal : normals)
+        EXPECT_GE(dot(normal, cluster.vertices.axis), cluster.vertices.cutoff);
 }
 
 } // namespace penumbra

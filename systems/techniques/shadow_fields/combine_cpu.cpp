@@ -9,8 +9,9 @@ namespace penumbra {
 namespace {
 
 struct ClusterSphere {
-    vec3 center, axis; // world
-    float radius, cutoff;
+    vec3 center; // world
+    float radius;
+    vec3 faceAxis, vertexAxis;
 };
 
 ClusterSphere worldBounds(const ClusterBounds& bounds, const GpuInstance& g)
@@ -18,26 +19,14 @@ ClusterSphere worldBounds(const ClusterBounds& bounds, const GpuInstance& g)
     ClusterSphere s;
     s.center =
         affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.sphere));
-    s.axis = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec3(bounds.cone)) /
-             g.material1.y;
+    const auto axis = [&](vec3 object) {
+        return linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, object) /
+               g.material1.y;
+    };
+    s.faceAxis = axis(vec3(bounds.faces));
+    s.vertexAxis = axis(vec3(bounds.vertices));
     s.radius = bounds.sphere.w * g.material1.y;
-    s.cutoff = bounds.cone.w;
     return s;
-}
-
-Receiver makeReceiver(const GpuInstance& g, const uvec4& geometry, const FrameConstants& frame)
-{
-    const vec3 local(uintBitsToFloat(geometry.x), uintBitsToFloat(geometry.y),
-                     uintBitsToFloat(geometry.z));
-    Receiver r;
-    r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, local);
-    r.normal = linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2,
-                      unpackNormal(geometry.w)) *
-               (1.0f / g.material1.y);
-    r.mirror = glm::reflect(normalize(r.position - vec3(frame.eye)), r.normal);
-    r.glossFraction = g.material.w;
-    r.glossExponent = g.material1.x;
-    return r;
 }
 
 Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity, const vec3& p)
@@ -46,7 +35,7 @@ Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity
     Sh4 sum{};
     for (uint corner = 0; corner < 8; ++corner) {
         const Sh4 steps =
-            fieldSteps(samples[cell.sample0 + fieldCornerOffset(corner, entity.grid.side)]);
+            fieldSteps(samples[cell.sample0 + fieldCornerOffset(corner, entity.grid)]);
         const float weight = fieldCornerWeight(corner, cell.fraction);
         for (int k = 0; k < 16; ++k)
             sum.c[k] += weight * steps.c[k];
@@ -57,7 +46,7 @@ Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity
 Sh4 sampleTetrahedral(const std::vector<uvec4>& samples, const FieldEntity& entity, const vec3& p)
 {
     const FieldCell cell = fieldCell(p, entity.grid);
-    const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid.side);
+    const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
     const Sh4 steps = fieldBlend(samples[cell.sample0], samples[cell.sample0 + t.offset.y],
                                  samples[cell.sample0 + t.offset.z],
                                  samples[cell.sample0 + t.offset.w], t.weight);
@@ -85,22 +74,22 @@ std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInsta
     std::vector<std::pair<float, std::uint32_t>> near;
     for (std::uint32_t c = 0; c < scene.clusters.size(); ++c) {
         const SceneCluster& cluster = scene.clusters[c];
-        const ClusterSphere s =
-            worldBounds(scene.bounds[cluster.bounds], instances.instances[cluster.instance]);
+        const ClusterBounds& bounds = scene.bounds[cluster.bounds];
+        const ClusterSphere s = worldBounds(bounds, instances.instances[cluster.instance]);
         const bool outside =
             std::any_of(std::begin(frame.frustum), std::end(frame.frustum), [&](const vec4& plane) {
                 return sphereOutside(plane, s.center, s.radius);
             });
-        if (outside || facesAway(s.center - vec3(frame.eye), s.axis, s.cutoff, s.radius))
+        if (outside || facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
             continue;
 
         near.clear();
         for (std::uint32_t i = 0; i < instances.instances.size(); ++i) {
             const GpuInstance& g = instances.instances[i];
             const vec3 to = vec3(g.sphere) - s.center;
-            const float distance = length(to), influence = g.shells.w;
+            const float distance = length(to), influence = g.grid.w;
             if (i == cluster.instance || influence == 0 || distance - s.radius > influence ||
-                belowHorizon(to, g.sphere.w, s.axis, s.cutoff, s.radius))
+                belowHorizon(to, g.sphere.w, s.vertexAxis, bounds.vertices.w, s.radius))
                 continue;
             near.emplace_back(distance, i);
         }
@@ -122,7 +111,7 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
     const ShRotation worldFromObject = instanceRotation(self);
     for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
         const ReceiverTexels& texels = scene.receivers[cluster.firstReceiver + v];
-        const Receiver receiver = makeReceiver(self, texels.geometry, frame);
+        const Receiver receiver = makeReceiver(self, texels.geometry, vec3(frame.eye));
         const Sh4 ownVisibility = selfVisibility(texels.selfVisibility, kSelfVisibilityScale);
         vec3 sum(0);
         if (kernel == Kernel::Literal) {
@@ -130,8 +119,7 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
                 shRotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
             for (const std::uint32_t occluder : visible.occluders) {
                 const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1,
-                                      entity.fieldFromWorld2, receiver.position);
+                const vec3 p = fieldPoint(entity, receiver.position);
                 const Sh4 visibility = sampleTrilinear(scene.fieldSamples, entity, p);
                 transfer =
                     shProduct(shRotateDense(visibility, instances.dense[occluder]), transfer);
@@ -142,8 +130,7 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             ShNodal transfer = transferNodal(shRotate(ownVisibility, worldFromObject), receiver);
             for (const std::uint32_t occluder : visible.occluders) {
                 const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = affine(entity.fieldFromWorld0, entity.fieldFromWorld1,
-                                      entity.fieldFromWorld2, receiver.position);
+                const vec3 p = fieldPoint(entity, receiver.position);
                 const Sh4 visibility = sampleTetrahedral(scene.fieldSamples, entity, p);
                 transfer = shMultiply(transfer, shNodes(shRotate(visibility, entity.rotation)));
             }

@@ -1,5 +1,6 @@
 // PNG files and pictures of numbers.
 #include "demo/image/image.h"
+#include "shaders/shared/tone_map.h"
 
 #include "runtime/file.h"
 

@@ -32,10 +32,10 @@ TEST(Layout, InstanceInputAndField)
 TEST(Layout, GpuInstance)
 {
     const SpirvStruct g = spirvStruct(shaderCode("instance_update.comp"), "GpuInstance");
-    EXPECT_SAME_OFFSET(g, GpuInstance, gamma0);
-    EXPECT_SAME_OFFSET(g, GpuInstance, shells);
+    EXPECT_SAME_OFFSET(g, GpuInstance, gammaShells);
+    EXPECT_SAME_OFFSET(g, GpuInstance, grid);
     EXPECT_SAME_OFFSET(g, GpuInstance, worldFromObject0);
-    EXPECT_SAME_OFFSET(g, GpuInstance, sphere);
+    EXPECT_SAME_OFFSET(g, GpuInstance, material1);
     EXPECT_EQ(g.arrayStride, sizeof(GpuInstance));
     EXPECT_EQ(spirvStruct(shaderCode("instance_update.comp"), "DenseRotation").arrayStride,
               sizeof(DenseRotation));

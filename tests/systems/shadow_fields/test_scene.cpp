@@ -11,7 +11,7 @@ namespace {
 
 MeshAsset finish(MeshAsset mesh, bool bake)
 {
-    mesh.clusters = buildClusters(mesh.positions, mesh.indices);
+    mesh.clusters = buildClusters(mesh.positions, mesh.normals, mesh.indices);
     mesh.selfVisibility.assign(mesh.positions.size(), SelfVisibility{});
     for (SelfVisibility& open : mesh.selfVisibility)
         open.fill(128);
