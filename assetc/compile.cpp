@@ -72,6 +72,11 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         if (options.bake.field)
             mesh.field = std::move(baked.field);
     }
+    if (mesh.field && options.adaptThreshold > 0) {
+        // Coarser grids for the shells that do without the fine one.
+        const StageTimer timer(report.times, "adapt");
+        report.adapt = adaptShells(*mesh.field, options.adaptThreshold);
+    }
     if (options.verify) {
         const StageTimer timer(report.times, "verify");
         const auto verified = verifyBake(mesh);

@@ -1,6 +1,7 @@
 // One mesh asset from source to bytes. compile.cpp is the whole way in order; read it first.
 #pragma once
 
+#include "assetc/adapt.h"
 #include "assetc/bake.h"
 #include "assetc/import/clean.h"
 #include "assetc/order.h"
@@ -13,6 +14,7 @@ namespace penumbra {
 
 struct CompileOptions {
     BakeOptions bake;
+    float adaptThreshold = kDefaultAdaptThreshold; // 0: all shells keep the bake's side
     MeshEncodeOptions encode;
     bool verify = false;
 };
@@ -26,6 +28,7 @@ struct StageTime {
 struct CompileReport {
     CleanReport clean;
     OrderReport order;
+    std::optional<AdaptReport> adapt;
     std::optional<VerifyReport> verify;
     std::vector<StageTime> times;
     std::vector<std::string> warnings;

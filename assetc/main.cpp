@@ -49,6 +49,12 @@ int run(int argc, char** argv)
         ->check(CLI::Range(2u, 65536u))
         ->check(CLI::Validator(checkEven, "even"))
         ->capture_default_str();
+    bakeCommand
+        ->add_option("--threshold", bake.options.adaptThreshold,
+                     "Error up to which a shell takes a coarser grid (Tamura 2006, Eq. 1); 0: all "
+                     "shells keep --max-side")
+        ->check(CLI::Range(0.0f, 1.0f))
+        ->capture_default_str();
     CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
     bakeCommand
         ->add_flag("--verify", bake.options.verify,

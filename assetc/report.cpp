@@ -83,6 +83,10 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
     result["clean"] = {{"degenerateTriangles", report.clean.degenerateTriangles},
                        {"mergedVertices", report.clean.mergedVertices},
                        {"generatedNormals", report.clean.generatedNormals}};
+    if (report.adapt)
+        result["adapt"] = {{"bytesFixed", report.adapt->bytesBefore},
+                           {"bytes", report.adapt->bytesAfter},
+                           {"worst", report.adapt->worst}};
     if (report.verify)
         result["verify"] = {{"samples", report.verify->samples},
                             {"directions", report.verify->directions},

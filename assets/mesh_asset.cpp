@@ -1,51 +1,13 @@
 #include "assets/mesh_asset.h"
 
+#include "assets/bounding_sphere.h"
+
 #include <algorithm>
 #include <span>
 
 namespace penumbra {
 
 namespace {
-
-// Keeps cull tests on the safe side of rounding.
-constexpr float kRadiusSlack = 1.0f + 1e-5f;
-
-struct Sphere {
-    vec3 center{0};
-    float radius = 0;
-};
-
-float farthest(const std::vector<vec3>& points, vec3 center)
-{
-    float squared = 0;
-    for (const vec3 point : points)
-        squared = std::max(squared, dot(point - center, point - center));
-    return std::sqrt(squared);
-}
-
-// The centre of the box, then steps of shrinking size towards the farthest point (Badoiu and
-// Clarkson, "Smaller core-sets for balls", SODA 2003); the best of all centres seen.
-Sphere boundingSphere(const std::vector<vec3>& points)
-{
-    vec3 low = points.front();
-    vec3 high = low;
-    for (const vec3 point : points) {
-        low = glm::min(low, point);
-        high = glm::max(high, point);
-    }
-    constexpr int kSteps = 16; // within 5 % of the smallest sphere, mostly 1 %
-    vec3 center = 0.5f * (low + high);
-    Sphere best{center, farthest(points, center)};
-    for (int step = 1; step <= kSteps; ++step) {
-        const vec3 far = *std::max_element(points.begin(), points.end(), [&](vec3 a, vec3 b) {
-            return dot(a - center, a - center) < dot(b - center, b - center);
-        });
-        center += (far - center) / (static_cast<float>(step) + 1.0f);
-        if (const float radius = farthest(points, center); radius < best.radius)
-            best = {center, radius};
-    }
-    return best;
-}
 
 NormalCone boundNormals(std::span<const vec3> normals)
 {
@@ -111,8 +73,8 @@ std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
             if (const float size = length(normal); size > 0)
                 faceNormals.push_back(normal / size);
         }
-        const Sphere sphere = boundingSphere(points);
-        clusters[i] = {sphere.center, sphere.radius * kRadiusSlack, boundNormals(faceNormals),
+        const Sphere sphere = boundingSphere(points, 16);
+        clusters[i] = {sphere.center, sphere.radius, boundNormals(faceNormals),
                        boundNormals(std::span(normals).subspan(first, count))};
     }
     return clusters;

@@ -1,5 +1,8 @@
 #include "assets/shadow_field.h"
 
+#include "runtime/assert.h"
+
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra {
@@ -12,6 +15,38 @@ bool inRange(float value, float min, float max)
 }
 
 } // namespace
+
+std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::uint32_t side,
+                                     std::uint32_t finer)
+{
+    PENUMBRA_ASSERT(side >= 2 && finer >= side &&
+                        texels.size() == std::size_t{side} * side * kFieldCoefficients,
+                    "{} bytes of side {} to side {}", texels.size(), side, finer);
+    std::vector<std::uint8_t> out(std::size_t{finer} * finer * kFieldCoefficients);
+    const float step = static_cast<float>(side - 1) / static_cast<float>(finer - 1);
+    std::uint8_t* to = out.data();
+    for (std::uint32_t y = 0; y < finer; ++y) {
+        for (std::uint32_t x = 0; x < finer; ++x) {
+            const float u = static_cast<float>(x) * step, v = static_cast<float>(y) * step;
+            const std::uint32_t x0 = std::min(static_cast<std::uint32_t>(u), side - 2);
+            const std::uint32_t y0 = std::min(static_cast<std::uint32_t>(v), side - 2);
+            const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
+            const std::uint8_t* low = &texels[(std::size_t{y0} * side + x0) * kFieldCoefficients];
+            const std::uint8_t* high = low + std::size_t{side} * kFieldCoefficients;
+            for (std::size_t k = 0; k < kFieldCoefficients; ++k) {
+                const std::size_t right = k + kFieldCoefficients;
+                const float value =
+                    (static_cast<float>(low[k]) * (1 - fx) + static_cast<float>(low[right]) * fx) *
+                        (1 - fy) +
+                    (static_cast<float>(high[k]) * (1 - fx) +
+                     static_cast<float>(high[right]) * fx) *
+                        fy;
+                *to++ = static_cast<std::uint8_t>(value + 0.5f);
+            }
+        }
+    }
+    return out;
+}
 
 std::uint64_t fieldTexelBytes(const ShadowField& field)
 {

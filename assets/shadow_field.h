@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace penumbra {
@@ -51,6 +52,10 @@ PENUMBRA_CONST std::uint32_t kMaxFieldDirections = 1u << 20;
 PENUMBRA_CONST std::uint64_t kMaxFieldBytes = 256u << 20;
 PENUMBRA_CONST float kMinFieldRadius = 1e-6f; // metres; 1/radius stays far from overflow
 PENUMBRA_CONST float kMaxCoordinate = 1e9f;   // metres; squares and cubes of it stay finite
+
+// A grid [y][x][16] of `side` as a reader sees it on a finer one: bilinear between nodes, rounded.
+std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::uint32_t side,
+                                     std::uint32_t finer);
 
 // Bytes that `texels` must have for the field's sides, channels and frames.
 std::uint64_t fieldTexelBytes(const ShadowField& field);

@@ -49,26 +49,11 @@ void appendField(const ShadowField& field, SceneData& scene)
     const std::uint8_t* shell = field.texels.data();
     for (std::uint32_t s = 0; s < input.shells; ++s) {
         const std::uint32_t from = field.shellSides[s];
-        const float step = static_cast<float>(from - 1) / static_cast<float>(side - 1);
-        for (std::uint32_t y = 0; y < side; ++y) {
-            for (std::uint32_t x = 0; x < side; ++x) {
-                const float u = static_cast<float>(x) * step, v = static_cast<float>(y) * step;
-                const std::uint32_t x0 = std::min(static_cast<std::uint32_t>(u), from - 2);
-                const std::uint32_t y0 = std::min(static_cast<std::uint32_t>(v), from - 2);
-                const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
-                std::uint8_t sample[16];
-                for (std::size_t k = 0; k < 16; ++k) {
-                    const auto at = [&](std::uint32_t dx, std::uint32_t dy) {
-                        return static_cast<float>(shell[((y0 + dy) * from + x0 + dx) * 16 + k]);
-                    };
-                    const float value = (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) +
-                                        (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
-                    sample[k] = static_cast<std::uint8_t>(std::lround(value));
-                }
-                std::memcpy(&samples[(std::size_t{y} * side + x) * input.shells + s], sample,
-                            sizeof(sample));
-            }
-        }
+        const std::vector<std::uint8_t> grid =
+            refineGrid({shell, std::size_t{from} * from * kFieldCoefficients}, from, side);
+        for (std::size_t node = 0; node < std::size_t{side} * side; ++node)
+            std::memcpy(&samples[node * input.shells + s], &grid[node * kFieldCoefficients],
+                        kFieldCoefficients);
         shell += static_cast<std::size_t>(from) * from * 16;
     }
 }

@@ -4,6 +4,7 @@
 
 #include "assetc/bake/directions.h"
 #include "assetc/bake/line_space.h"
+#include "assets/bounding_sphere.h"
 #include "shaders/shared/field.h"
 
 #include <algorithm>
@@ -20,33 +21,6 @@ constexpr std::size_t kBatch =
 constexpr std::size_t kBlock = 256; // points per task
 
 using Coefficients = std::array<float, 16>;
-
-struct Sphere {
-    vec3 center;
-    float radius;
-};
-
-// Close to the smallest sphere: steps of shrinking length towards the farthest point (Badoiu and
-// Clarkson 2003).
-Sphere boundingSphere(const std::vector<vec3>& points)
-{
-    vec3 low(points[0]), high(points[0]);
-    for (const vec3& p : points) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    vec3 center = 0.5f * (low + high);
-    const auto farthest = [&] {
-        return *std::max_element(points.begin(), points.end(), [&](const vec3& a, const vec3& b) {
-            return dot(a - center, a - center) < dot(b - center, b - center);
-        });
-    };
-    constexpr int kSteps = 64; // within about 1 % of the optimum
-    for (int i = 1; i <= kSteps; ++i)
-        center += (farthest() - center) / static_cast<float>(i + 1);
-    // A little larger, so that rounding leaves no vertex outside.
-    return {center, length(farthest() - center) * 1.0001f};
-}
 
 PointSet shellPoints(const BakeOptions& options, const ShadowField& field)
 {
@@ -163,7 +137,7 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
     PENUMBRA_ASSERT(options.shells >= 2 && options.side >= 3, "{} shells of side {}",
                     options.shells, options.side);
 
-    const Sphere sphere = boundingSphere(positions);
+    const Sphere sphere = boundingSphere(positions, 64);
     const PointSet vertices = normalised(positions, sphere);
 
     BakeResult result;

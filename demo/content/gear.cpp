@@ -103,7 +103,8 @@ ContentMesh makeHexNut()
     for (int i = 0; i < kSides * kPerSide; ++i) {
         const float inSide = static_cast<float>(i % kPerSide) / kPerSide - 0.5f; // -0.5 is a corner
         const float local = inSide * glm::two_pi<float>() / kSides;
-        angles.push_back(local + glm::two_pi<float>() * static_cast<float>(i / kPerSide) / kSides);
+        const auto sideIndex = i / kPerSide;
+        angles.push_back(local + glm::two_pi<float>() * static_cast<float>(sideIndex) / kSides);
         outline.push_back(kApothem / cos(local));
     }
     const auto ring = [&](auto radiusAndHeight) {

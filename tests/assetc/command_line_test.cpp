@@ -58,7 +58,7 @@ TEST_F(CommandLine, WrongUsageIsTwo)
          {std::string(), std::string("fry"), std::string("bake"), "bake " + at("square.gltf"),
           bake + " --shells 1", bake + " --shells x", bake + " --max-side 64",
           bake + " --directions 63", bake + " --directions 0", bake + " --jobs 0",
-          bake + " --threshold 0.01", bake + " --verify --no-field", bake + " extra",
+          bake + " --threshold -1", bake + " --verify --no-field", bake + " extra",
           "bake " + at("square.gltf") + " -o " + at("o.gltf"), std::string("inspect"),
           std::string("validate --what x")}) {
         const Outcome outcome = run(arguments);
