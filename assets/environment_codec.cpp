@@ -1,11 +1,11 @@
 // The bytes of a .env file; the layout is a contract, in docs/asset_format.md.
 #include "assets/environment.h"
 
+#include "assets/checksum.h"
+
 #include <bit>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 namespace penumbra {
 
@@ -36,11 +36,6 @@ struct HalfPixel {
 static_assert(sizeof(HalfPixel) == 6);
 
 constexpr std::uint16_t kHalfInfinity = 0x7c00; // the halves below it are the finite ones >= 0
-
-std::uint64_t checksum(std::span<const std::byte> bytes)
-{
-    return XXH64(bytes.data(), bytes.size(), 0);
-}
 
 bool finiteAndNotNegative(float value)
 {

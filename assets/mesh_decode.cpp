@@ -1,3 +1,4 @@
+#include "assets/checksum.h"
 #include "assets/draco_mesh.h"
 #include "assets/field_payload.h"
 #include "assets/glb.h"
@@ -96,6 +97,16 @@ ShadowField readFieldHead(const JsonReader& extension)
     return field;
 }
 
+// Since version 1.1. Before decoding: a decoder reads sense into much that is damaged.
+void checkPayload(const JsonReader& extension, const char* member,
+                  std::span<const std::byte> payload)
+{
+    if (extension.has(member) && extension.text(member) != checksumText(payload))
+        extension.refuse(fmt::format("has a {} that its data does not: the file is damaged, or "
+                                     "another program rewrote it; compile it again",
+                                     member));
+}
+
 std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& extension,
                                      std::span<const std::byte> bin, JsonProblems& problems)
 {
@@ -103,6 +114,7 @@ std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& e
     ShadowField field = readFieldHead(extension);
     const std::uint64_t byteLength = extension.count("byteLength", kMaxFieldBytes);
     const auto payload = readView(root, extension.count("bufferView", kMaxViews), bin);
+    checkPayload(extension, "fieldChecksum", payload);
     if (problems.size() > before)
         return std::nullopt;
     if (const auto head = validateFieldHead(field); !head) {
@@ -233,6 +245,7 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
     mesh.material = readMaterial(root, primitive);
     const std::size_t before = problems.size();
     const GeometryHead head = readGeometryHead(root, primitive, bin);
+    checkPayload(extension, "geometryChecksum", head.payload);
     if (problems.size() == before)
         if (const auto geometry = readGeometry(head, mesh); !geometry)
             problems.push_back(geometry.error());

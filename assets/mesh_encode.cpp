@@ -1,3 +1,4 @@
+#include "assets/checksum.h"
 #include "assets/draco_mesh.h"
 #include "assets/field_payload.h"
 #include "assets/glb.h"
@@ -169,8 +170,12 @@ Result<std::vector<std::byte>> encodeMeshAsset(const MeshAsset& mesh,
     json extension = mesh.field ? fieldJson(*mesh.field) : json::object();
     extension["version"] = kFormatVersion;
     extension["selfVisibilityScale"] = kSelfVisibilityScale;
-    if (mesh.field)
-        extension["bufferView"] = addBufferView(document, bin, encodeFieldTexels(*mesh.field));
+    extension["geometryChecksum"] = checksumText(*draco);
+    if (mesh.field) {
+        const std::vector<std::byte> texels = encodeFieldTexels(*mesh.field);
+        extension["fieldChecksum"] = checksumText(texels);
+        extension["bufferView"] = addBufferView(document, bin, texels);
+    }
     const json primitive = primitiveJson(document, shipped, dracoView);
     document["meshes"] = json::array({{{"name", mesh.name},
                                        {"primitives", json::array({primitive})},

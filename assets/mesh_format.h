@@ -5,7 +5,7 @@ namespace penumbra {
 
 constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 constexpr const char* kFieldExtension = "PENUMBRA_shadow_field";
-constexpr const char* kFormatVersion = "1.0"; // readers refuse another major
+constexpr const char* kFormatVersion = "1.1"; // readers refuse another major
 constexpr int kFormatMajor = 1;
 constexpr const char* kFieldEncoding = "delta-zstd";
 constexpr const char* kSelfVisibilityNames[] = {"_SELFVIS_0", "_SELFVIS_1", "_SELFVIS_2",

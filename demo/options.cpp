@@ -37,12 +37,19 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
                    "name of a .env of the assets to light the scene with");
     app.add_flag("--list-scenes", options.listScenes, "list the scenes and stop");
     app.add_option("--size", size, "picture size, WxH")->capture_default_str();
-    app.add_option("--frames", options.frames, "stop after N frames (headless: 240)");
+    app.add_option("--frames", options.frames, "stop after N frames (headless: 240)")
+        ->check(CLI::Range(1u, 10'000'000u));
     app.add_flag("--headless", options.headless,
                  "no window: render to files at 60 frames per second of scene time");
     CLI::Option* outOption =
         app.add_option("--out", options.out, "folder for PNG files and reference.json");
-    CLI::Option* recordOption = app.add_option("--record", options.record, "write an MP4 film");
+    CLI::Option* recordOption =
+        app.add_option("--record", options.record, "write a film, .mp4")
+            ->check(CLI::Validator(
+                [](const std::string& name) {
+                    return name.ends_with(".mp4") ? std::string() : name + " does not end in .mp4";
+                },
+                ".mp4"));
     CLI::Option* benchmarkOption =
         app.add_option("--benchmark", options.benchmark, "write timings as JSON");
     CLI::Option* referenceOption =

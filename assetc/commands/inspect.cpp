@@ -43,7 +43,8 @@ int runValidate(const std::filesystem::path& file, bool json)
 {
     std::vector<Error> problems;
     if (const auto bytes = readFile(file, kMaxMeshAssetBytes); !bytes) {
-        problems.push_back(bytes.error());
+        spdlog::error("{}", bytes.error().message);
+        return kExitInput;
     } else if (!isEnvironmentFile(file)) {
         problems = checkMeshAsset(*bytes);
     } else if (const auto environment = decodeEnvironment(*bytes); !environment) {

@@ -56,7 +56,7 @@ Result<CleanReport> cleanMesh(MeshAsset& mesh)
     if (mesh.indices.empty())
         return Error{
             report.degenerateTriangles == 0
-                ? std::string("no triangles in the file's default scene")
+                ? std::string("no triangles in the file (of glTF, in its default scene)")
                 : fmt::format("none of the {} triangles has an area", report.degenerateTriangles)};
 
     // One vertex per distinct position and normal, in order of first use.

@@ -4,6 +4,7 @@
 #include "runtime/file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <sstream>
 #include <tiny_obj_loader.h>
@@ -50,6 +51,53 @@ private:
     std::filesystem::path m_folder;
     std::vector<std::string>& m_warnings;
 };
+
+// tinyobjloader reads "v 1 a 0" as (1, 0, 0) and skips a face without corners, so a damaged file
+// would compile to another mesh. The numbers of vertices and the corners of faces are checked here
+// first.
+Result<void> checkLines(std::string_view text)
+{
+    std::size_t number = 0;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++number;
+        const auto nextWord = [&] {
+            const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
+            line.remove_prefix(begin);
+            const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
+            const std::string_view word = line.substr(0, length);
+            line.remove_prefix(length);
+            return word;
+        };
+        const std::string_view keyword = nextWord();
+        if (keyword == "v") {
+            for (int i = 0; i < 3; ++i) {
+                std::string_view word = nextWord();
+                if (word.starts_with('+'))
+                    word.remove_prefix(1);
+                double value = 0;
+                const auto [last, error] =
+                    std::from_chars(word.data(), word.data() + word.size(), value);
+                if (error != std::errc{} || last != word.data() + word.size() ||
+                    !std::isfinite(value))
+                    return Error{
+                        fmt::format("line {}: a vertex takes three finite numbers, number {} "
+                                    "is \"{}\"",
+                                    number, i + 1, word.substr(0, 40))};
+            }
+        } else if (keyword == "f") {
+            int corners = 0;
+            while (corners < 3 && !nextWord().empty())
+                ++corners;
+            if (corners < 3)
+                return Error{fmt::format("line {}: a face with {} corners; the file may be cut off",
+                                         number, corners)};
+        }
+    }
+    return {};
+}
 
 struct ObjFile {
     tinyobj::attrib_t attributes;
@@ -158,6 +206,8 @@ Result<ImportedMesh> importObj(const std::filesystem::path& path)
     const auto text = readText(path, kMaxSourceBytes);
     if (!text)
         return text.error();
+    if (const auto lines = checkLines(*text); !lines)
+        return lines.error();
     ImportedMesh out;
     ConfinedMaterialReader materials(path.parent_path(), out.warnings);
     auto file = parse(*text, &materials, false);

@@ -50,4 +50,22 @@ TEST(ObjImport, MissingNormalsAreZero)
     EXPECT_EQ(result->mesh.normals[1], vec3{0});
 }
 
+// What the library would read as another mesh.
+TEST(ObjImport, DamagedLinesAreRefusedWithTheirNumber)
+{
+    const TemporaryFolder folder;
+    const std::string good = "v 0 0 0\nv 1 0 0\r\nv 0 +1e0 0 0.5\n";
+    EXPECT_TRUE(importMesh(folder.write("good.obj", good + "\tf 1 2 3\n")));
+    for (const auto& [damaged, message] :
+         {std::pair<std::string, std::string>{"v 1 a 0\nf 1 2 3\n", "line 4: a vertex takes"},
+          {"v 1 0\nf 1 2 3\n", "line 4: a vertex takes"},
+          {"v 1 nan 0\nf 1 2 3\n", "number 2 is \"nan\""},
+          {"f 1 2 3\nf ", "line 5: a face with 0 corners"},
+          {"f 1 2 3\nf 1 2", "line 5: a face with 2 corners"}}) {
+        const auto mesh = importMesh(folder.write("bad.obj", good + damaged));
+        ASSERT_FALSE(mesh) << damaged;
+        EXPECT_NE(mesh.error().message.find(message), std::string::npos) << mesh.error().message;
+    }
+}
+
 } // namespace penumbra

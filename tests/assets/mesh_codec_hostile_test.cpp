@@ -56,6 +56,25 @@ TEST(MeshCodecHostile, EveryTruncationIsRefused)
         EXPECT_FALSE(decodeExact(bytes.data(), size)) << size;
 }
 
+// Draco and the field's planes read sense into most damaged bytes; the checksums do not.
+TEST(MeshCodecHostile, EveryDamagedPayloadByteIsNoticed)
+{
+    const auto bytes = *encodeMeshAsset(sampleAsset(4));
+    const auto glb = *readGlb(bytes);
+    const auto document = json::parse(glb.json);
+    for (const json& view : document["bufferViews"]) {
+        const std::size_t first = view["byteOffset"], size = view["byteLength"];
+        for (std::size_t at = first; at < first + size; at += 7) {
+            std::vector<std::byte> damaged(glb.bin.begin(), glb.bin.end());
+            damaged[at] ^= std::byte{4};
+            const auto file = *writeGlb(std::string(glb.json), damaged);
+            const auto decoded = decodeExact(file.data(), file.size());
+            ASSERT_FALSE(decoded) << at;
+            EXPECT_NE(decoded.error().message.find("Checksum"), std::string::npos);
+        }
+    }
+}
+
 // Truncations that keep the container whole, so that the cut reaches the inner readers.
 TEST(MeshCodecHostile, TruncatedBinChunkIsRefused)
 {
@@ -67,9 +86,16 @@ TEST(MeshCodecHostile, TruncatedBinChunkIsRefused)
     }
 }
 
+// Without checksums, as an attacker would write it, so that mutants reach the decoders.
 TEST(MeshCodecHostile, MutationsNeverCrash)
 {
-    const auto bytes = *encodeMeshAsset(sampleAsset(4));
+    const auto whole = *encodeMeshAsset(sampleAsset(4));
+    const auto glb = *readGlb(whole);
+    json document = json::parse(glb.json);
+    extensionOf(document).erase("geometryChecksum");
+    extensionOf(document).erase("fieldChecksum");
+    const auto bytes = *writeGlb(document.dump(), glb.bin);
+    ASSERT_TRUE(decodeExact(bytes.data(), bytes.size()));
     std::mt19937 random(1);
     int refused = 0;
     constexpr int kRounds = 6000;

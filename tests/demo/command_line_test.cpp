@@ -31,8 +31,9 @@ TEST_F(DemoCommandLine, WrongUsageIsTwo)
 {
     for (const std::string& arguments :
          {std::string("--size 12"), std::string("--size 8x8"), std::string("--frames x"),
-          std::string("--kernel fast"), std::string("--reference 3"), std::string("--what"),
-          std::string("falling"), "--compare-kernels " + at("k.json") + " --reference",
+          std::string("--frames 0"), "--record " + at("film.avi"), std::string("--kernel fast"),
+          std::string("--reference 3"), std::string("--what"), std::string("falling"),
+          "--compare-kernels " + at("k.json") + " --reference",
           "--compare-kernels " + at("k.json") + " --out " + at("o"),
           "--compare-kernels " + at("k.json") + " --kernel exact"}) {
         const Outcome outcome = run(arguments);
