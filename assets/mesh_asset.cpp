@@ -30,6 +30,8 @@ std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
                                        const std::vector<vec3>& normals,
                                        const std::vector<std::uint32_t>& indices)
 {
+    PENUMBRA_ASSERT(normals.size() == positions.size(), "{} normals of {} positions",
+                    normals.size(), positions.size());
     const std::size_t clusterCount = (positions.size() + kClusterVertices - 1) / kClusterVertices;
     // Triangles by cluster: counted, then filled. A triangle enters each cluster that it touches
     // once.

@@ -62,8 +62,8 @@ PENUMBRA_CONST std::uint32_t kMaxMeshTriangles = 8u << 20;
 PENUMBRA_CONST std::uint32_t kMaxNameBytes = 256;
 PENUMBRA_CONST float kMaxGlossExponent = 1e5f;
 
-// Bounds of the clusters for a mesh as it stands. Indices must be below positions.size(). Normals
-// that point all ways, or none at all, give no cone.
+// Bounds of the clusters for a mesh as it stands: one normal per position, indices below
+// positions.size(). Normals that point all ways give no cone.
 std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
                                        const std::vector<vec3>& normals,
                                        const std::vector<std::uint32_t>& indices);

@@ -114,7 +114,8 @@ std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& e
     ShadowField field = readFieldHead(extension);
     const std::uint64_t byteLength = extension.count("byteLength", kMaxFieldBytes);
     const auto payload = readView(root, extension.count("bufferView", kMaxViews), bin);
-    checkPayload(extension, "fieldChecksum", payload);
+    if (problems.size() == before)
+        checkPayload(extension, "fieldChecksum", payload);
     if (problems.size() > before)
         return std::nullopt;
     if (const auto head = validateFieldHead(field); !head) {
@@ -245,7 +246,8 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
     mesh.material = readMaterial(root, primitive);
     const std::size_t before = problems.size();
     const GeometryHead head = readGeometryHead(root, primitive, bin);
-    checkPayload(extension, "geometryChecksum", head.payload);
+    if (problems.size() == before)
+        checkPayload(extension, "geometryChecksum", head.payload);
     if (problems.size() == before)
         if (const auto geometry = readGeometry(head, mesh); !geometry)
             problems.push_back(geometry.error());

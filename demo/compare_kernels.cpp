@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kComparedFrames =
     8;                      // spread over the run; the scalar path takes most of the time
-constexpr int kRepeats = 3; // per frame and kernel, the fastest counts: machines are shared
+constexpr int kRepeats = 5; // per frame and kernel, the fastest counts: machines are shared
 
 struct KernelRun {
     RunStatistics statistics;

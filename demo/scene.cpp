@@ -40,9 +40,11 @@ Result<Environment> loadEnvironment(const std::filesystem::path& assets, const s
     std::error_code ec;
     if (!std::filesystem::exists(path, ec)) {
         std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(assets, ec))
-            if (entry.path().extension() == ".env")
-                names.push_back(entry.path().stem().string());
+        const std::filesystem::directory_iterator end;
+        for (std::filesystem::directory_iterator entry(assets, ec); entry != end;
+             entry.increment(ec))
+            if (entry->path().extension() == ".env")
+                names.push_back(entry->path().stem().string());
         std::sort(names.begin(), names.end());
         return Error{fmt::format("no environment is called '{}'; {} has: {}", name, assets.string(),
                                  fmt::join(names, ", "))};

@@ -160,7 +160,7 @@ Result<FramePasses> createFramePasses(const Device& device)
 
     FramePasses passes;
     Result<void> failed;
-    const auto compute = [&](Pipeline& pipeline, ComputeDesc desc) {
+    const auto compute = [&](Pipeline& pipeline, const ComputeDesc& desc) {
         Result<Pipeline> made = createComputePipeline(device, desc);
         if (made)
             pipeline = std::move(*made);

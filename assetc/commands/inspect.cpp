@@ -42,7 +42,10 @@ int runInspect(const std::filesystem::path& file, bool json)
 int runValidate(const std::filesystem::path& file, bool json)
 {
     std::vector<Error> problems;
-    if (const auto bytes = readFile(file, kMaxMeshAssetBytes); !bytes) {
+    const auto bytes = readFile(file, kMaxMeshAssetBytes);
+    if (!bytes && json) {
+        problems.push_back(bytes.error());
+    } else if (!bytes) {
         spdlog::error("{}", bytes.error().message);
         return kExitInput;
     } else if (!isEnvironmentFile(file)) {

@@ -52,49 +52,68 @@ private:
     std::vector<std::string>& m_warnings;
 };
 
+// An index, or two or three with slashes: "3", "3/1", "3//2", "-1/-1/-1".
+bool isCorner(std::string_view word)
+{
+    for (std::size_t i = 0; i < word.size(); ++i) {
+        const bool first = i == 0 || word[i - 1] == '/';
+        const bool digit = word[i] >= '0' && word[i] <= '9';
+        if (!digit && !(word[i] == '-' && first) && !(word[i] == '/' && i > 0))
+            return false;
+    }
+    return true;
+}
+
+bool isFiniteNumber(std::string_view word)
+{
+    if (word.starts_with('+') && !word.starts_with("+-"))
+        word.remove_prefix(1);
+    double value = 0;
+    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc{} && last == word.data() + word.size() && std::isfinite(value);
+}
+
 // tinyobjloader reads "v 1 a 0" as (1, 0, 0) and skips a face without corners, so a damaged file
-// would compile to another mesh. The numbers of vertices and the corners of faces are checked here
-// first.
+// would compile to another mesh. Numbers of vertices and corners of faces are checked here first.
 Result<void> checkLines(std::string_view text)
 {
-    std::size_t number = 0;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
+    if (text.find('\0') != std::string_view::npos)
+        return Error{"a zero byte: not a text file"};
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
         std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        ++number;
+        text.remove_prefix(end);
+        text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
         const auto nextWord = [&] {
-            const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
-            line.remove_prefix(begin);
-            const std::size_t length = std::min(line.find_first_of(" \t\r"), line.size());
-            const std::string_view word = line.substr(0, length);
-            line.remove_prefix(length);
+            line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+            const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+            line.remove_prefix(word.size());
             return word;
         };
         const std::string_view keyword = nextWord();
+        if (keyword != "v" && keyword != "f")
+            continue;
+        if (line.ends_with('\\'))
+            return Error{fmt::format("line {}: continues on the next, which is not supported; join "
+                                     "the two",
+                                     number)};
         if (keyword == "v") {
-            for (int i = 0; i < 3; ++i) {
-                std::string_view word = nextWord();
-                if (word.starts_with('+'))
-                    word.remove_prefix(1);
-                double value = 0;
-                const auto [last, error] =
-                    std::from_chars(word.data(), word.data() + word.size(), value);
-                if (error != std::errc{} || last != word.data() + word.size() ||
-                    !std::isfinite(value))
-                    return Error{
-                        fmt::format("line {}: a vertex takes three finite numbers, number {} "
-                                    "is \"{}\"",
-                                    number, i + 1, word.substr(0, 40))};
-            }
-        } else if (keyword == "f") {
-            int corners = 0;
-            while (corners < 3 && !nextWord().empty())
-                ++corners;
-            if (corners < 3)
-                return Error{fmt::format("line {}: a face with {} corners; the file may be cut off",
-                                         number, corners)};
+            for (int i = 1; i <= 3; ++i)
+                if (const std::string_view word = nextWord(); !isFiniteNumber(word))
+                    return Error{fmt::format("line {}: a vertex takes three finite numbers, number "
+                                             "{} is \"{}\"",
+                                             number, i, word.substr(0, 40))};
+            continue;
         }
+        int corners = 0;
+        for (std::string_view word = nextWord(); !word.empty() && !word.starts_with('#');
+             word = nextWord(), ++corners)
+            if (!isCorner(word))
+                return Error{fmt::format("line {}: corner \"{}\" is not an index", number,
+                                         word.substr(0, 40))};
+        if (corners < 3)
+            return Error{fmt::format("line {}: a face with {} corners; the file may be cut off",
+                                     number, corners)};
     }
     return {};
 }

@@ -145,10 +145,11 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
             placed = true;
             const int column = slot % 9, layer = slot / 9;
             const quat rotation = randomRotation(random);
+            const auto row = column / 3;
             const vec3 position(
                 (static_cast<float>(column % 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f),
                 0.55f + static_cast<float>(layer) * 0.75f + random.uniform(0, 0.1f),
-                (static_cast<float>(column / 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f));
+                (static_cast<float>(row) - 1) * 0.72f + random.uniform(-0.06f, 0.06f));
             BodyDescription body{.id = static_cast<std::uint64_t>(slot) + 1,
                                  .shape = kinds[k].shape};
             constexpr float kDensity = 300; // kg/m³: light wood; only the ratios matter here

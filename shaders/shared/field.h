@@ -22,7 +22,8 @@ struct FieldGrid {
     uint shells;
 };
 
-// A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] along u,
+// A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] (but for
+// rounding, which the weights below round away) along u,
 // v and shell.
 struct FieldCell {
     uint sample0;

@@ -28,8 +28,8 @@ struct ShTurn {
     vec3 s;
 };
 
-// A rotation R = Rz(alpha) Ry(beta) Rz(gamma): 18 numbers, which cost less to load than the 84 of a
-// dense matrix.
+// A rotation R = Rz(alpha) Ry(beta) Rz(gamma): 18 numbers that follow from 6, which cost less to
+// load than the 84 of a dense matrix.
 struct ShRotation {
     ShTurn gamma;
     ShTurn beta;

@@ -113,6 +113,8 @@ TEST_F(CommandLine, ValidateListsEveryProblem)
     EXPECT_EQ(report["valid"], false);
     EXPECT_EQ(report["problems"].size(), 2u) << outcome.out;
     EXPECT_EQ(run("validate " + at("missing.glb")).code, 1);
+    EXPECT_EQ(nlohmann::json::parse(run("validate --json " + at("missing.glb")).out)["valid"],
+              false);
     EXPECT_EQ(run("validate " + at("square.gltf")).code, 1); // not compiled
 }
 

@@ -55,11 +55,17 @@ TEST(ObjImport, DamagedLinesAreRefusedWithTheirNumber)
 {
     const TemporaryFolder folder;
     const std::string good = "v 0 0 0\nv 1 0 0\r\nv 0 +1e0 0 0.5\n";
-    EXPECT_TRUE(importMesh(folder.write("good.obj", good + "\tf 1 2 3\n")));
+    EXPECT_TRUE(importMesh(folder.write("good.obj", good + "\tf 1 2 3 # three\nf -1//-1 2/1 3\n")));
     for (const auto& [damaged, message] :
          {std::pair<std::string, std::string>{"v 1 a 0\nf 1 2 3\n", "line 4: a vertex takes"},
           {"v 1 0\nf 1 2 3\n", "line 4: a vertex takes"},
           {"v 1 nan 0\nf 1 2 3\n", "number 2 is \"nan\""},
+          {"v 1 +-1 0\nf 1 2 3\n", "number 2 is"},
+          {"v 1\r2 3\nf 1 2 3\n", "line 4: a vertex takes"},
+          {"f 1 2O 3\n", "corner \"2O\""},
+          {"f 1.5 2 3\n", "corner \"1.5\""},
+          {"f 1 2 \\\n3\n", "continues on the next"},
+          {std::string("f 1 \0 2 3\n", 11), "zero byte"},
           {"f 1 2 3\nf ", "line 5: a face with 0 corners"},
           {"f 1 2 3\nf 1 2", "line 5: a face with 2 corners"}}) {
         const auto mesh = importMesh(folder.write("bad.obj", good + damaged));

@@ -57,7 +57,7 @@ TEST(MeshCodecHostile, EveryTruncationIsRefused)
 }
 
 // Draco and the field's planes read sense into most damaged bytes; the checksums do not.
-TEST(MeshCodecHostile, EveryDamagedPayloadByteIsNoticed)
+TEST(MeshCodecHostile, DamagedPayloadBytesAreNoticed)
 {
     const auto bytes = *encodeMeshAsset(sampleAsset(4));
     const auto glb = *readGlb(bytes);
