@@ -12,32 +12,25 @@ namespace {
 
 using Grid = std::span<const std::uint8_t>; // [y][x][16]
 
-std::size_t gridBytes(std::uint32_t side)
-{
-    return std::size_t{side} * side * kFieldCoefficients;
-}
-
 // Eq. (1) at one node.
-float difference(const std::uint8_t* a, const std::uint8_t* b, const vec4& scale)
+float difference(const std::uint8_t* a, const std::uint8_t* b, const vec4& step)
 {
     Sh4 steps;
     for (std::size_t k = 0; k < kFieldCoefficients; ++k)
         steps.c[k] = static_cast<float>(a[k] - b[k]);
-    Sh4 deviation = fieldVisibility(steps, scale);
-    deviation.c[0] -= kSqrt4Pi; // a difference of two has no constant
-    const ShNodal values = shNodes(deviation);
+    const ShNodal values = shNodes(fieldDeviation(steps, step));
     float sum = 0;
     for (int n = 0; n < 32; ++n)
         sum += kShNodes[n].w * std::abs(values.v[n]);
     return sum / (4 * glm::pi<float>());
 }
 
-float largestDifference(Grid a, Grid b, const vec4& scale)
+float largestDifference(Grid a, Grid b, const vec4& step)
 {
     float largest = 0;
     for (std::size_t i = 0; i < a.size(); i += kFieldCoefficients)
         if (!std::equal(&a[i], &a[i] + kFieldCoefficients, &b[i]))
-            largest = std::max(largest, difference(&a[i], &b[i], scale));
+            largest = std::max(largest, difference(&a[i], &b[i], step));
     return largest;
 }
 
@@ -59,7 +52,7 @@ struct AdaptedShell {
 };
 
 // `grids` [frame * channel]: the same shell of all of them.
-AdaptedShell adaptShell(const std::vector<Grid>& grids, std::uint32_t side, const vec4& scale,
+AdaptedShell adaptShell(const std::vector<Grid>& grids, std::uint32_t side, const vec4& step,
                         float threshold)
 {
     AdaptedShell adapted{side};
@@ -72,7 +65,7 @@ AdaptedShell adaptShell(const std::vector<Grid>& grids, std::uint32_t side, cons
             coarser.grids.push_back(everySecondNode(adapted.grids[i], adapted.side));
             coarser.worst =
                 std::max(coarser.worst, largestDifference(refineGrid(coarser.grids[i], half, side),
-                                                          grids[i], scale));
+                                                          grids[i], step));
         }
         if (coarser.worst >= threshold)
             break;
@@ -87,23 +80,12 @@ AdaptReport adaptShells(ShadowField& field, float threshold)
 {
     const std::size_t shells = field.shellSides.size();
     const std::size_t fields = std::size_t{field.channels} * field.frames;
-    std::vector<std::size_t> begins(shells * fields + 1, 0); // of grid [field][shell]
-    for (std::size_t i = 0; i < shells * fields; ++i)
-        begins[i + 1] = begins[i] + gridBytes(field.shellSides[i % shells]);
-
     std::vector<AdaptedShell> adapted(shells);
     tbb::parallel_for(std::size_t{0}, shells, [&](std::size_t s) {
         std::vector<Grid> grids;
         for (std::size_t f = 0; f < fields; ++f)
-            grids.push_back(
-                Grid(field.texels).subspan(begins[f * shells + s], gridBytes(field.shellSides[s])));
-        const float r = field.innerRadius *
-                        std::pow(field.outerRadius / field.innerRadius,
-                                 static_cast<float>(s) /
-                                     static_cast<float>(std::max<std::size_t>(shells, 2) - 1));
-        const std::array<float, 4>& k = field.bandScale;
-        adapted[s] = adaptShell(grids, field.shellSides[s],
-                                vec4(k[0], k[1], k[2], k[3]) * fieldDecay(r * r), threshold);
+            grids.push_back(fieldGrid(field, f * shells + s));
+        adapted[s] = adaptShell(grids, field.shellSides[s], shellStep(field, s), threshold);
     });
 
     AdaptReport report{field.texels.size()};

@@ -7,7 +7,8 @@
 namespace penumbra {
 
 constexpr float kDefaultAdaptThreshold = 0.010f; // Tamura et al. 2006, section 6.1
-constexpr std::uint32_t kMinAdaptedSide = 9;     // below, a cell spans 45 degrees and saves nothing
+// 1,296 bytes per shell: less would save nothing that counts, and a cell spans 45 degrees already.
+constexpr std::uint32_t kMinAdaptedSide = 9;
 
 struct AdaptReport {
     std::uint64_t bytesBefore = 0; // of the texels

@@ -97,23 +97,17 @@ Sample drawSample(const ShadowField& field, std::mt19937& random)
     const std::size_t side = field.shellSides[shell];
     const std::size_t x = random() % side;
     const std::size_t y = random() % side;
-    std::size_t node = y * side + x;
-    for (std::size_t s = 0; s < shell; ++s)
-        node += std::size_t{field.shellSides[s]} * field.shellSides[s];
+    const auto texel =
+        fieldGrid(field, shell).subspan((y * side + x) * kFieldCoefficients, kFieldCoefficients);
 
     Sample sample;
-    const float last = static_cast<float>(field.shellSides.size() - 1);
-    sample.radius = field.innerRadius * std::pow(field.outerRadius / field.innerRadius,
-                                                 static_cast<float>(shell) / last);
+    sample.radius = shellRadius(field, shell);
     const vec2 uv =
         vec2(static_cast<float>(x), static_cast<float>(y)) / static_cast<float>(side - 1);
     sample.position = field.center + field.radius * sample.radius * octahedralDirection(uv);
-    for (int i = 0; i < 16; ++i)
-        sample.stored.c[i] =
-            static_cast<float>(field.texels[node * 16 + static_cast<std::size_t>(i)]) - 128.0f;
-    const std::array<float, 4>& k = field.bandScale;
-    sample.stored = fieldVisibility(sample.stored, vec4(k[0], k[1], k[2], k[3]) *
-                                                       fieldDecay(sample.radius * sample.radius));
+    for (std::size_t i = 0; i < texel.size(); ++i)
+        sample.stored.c[i] = static_cast<float>(texel[i]) - 128.0f;
+    sample.stored = fieldVisibility(sample.stored, shellStep(field, shell));
     return sample;
 }
 

@@ -1,6 +1,7 @@
 #include "assets/shadow_field.h"
 
 #include "runtime/assert.h"
+#include "shaders/shared/field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,32 @@ bool inRange(float value, float min, float max)
 }
 
 } // namespace
+
+float shellRadius(const ShadowField& field, std::size_t shell)
+{
+    const auto last = static_cast<float>(field.shellSides.size() - 1);
+    return field.innerRadius *
+           std::pow(field.outerRadius / field.innerRadius, static_cast<float>(shell) / last);
+}
+
+vec4 shellStep(const ShadowField& field, std::size_t shell)
+{
+    const float r = shellRadius(field, shell);
+    const std::array<float, 4>& k = field.bandScale;
+    return vec4(k[0], k[1], k[2], k[3]) * fieldDecay(r * r);
+}
+
+std::span<const std::uint8_t> fieldGrid(const ShadowField& field, std::size_t grid)
+{
+    const auto bytesOf = [&](std::size_t i) {
+        const std::size_t side = field.shellSides[i % field.shellSides.size()];
+        return side * side * kFieldCoefficients;
+    };
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < grid; ++i)
+        first += bytesOf(i);
+    return std::span(field.texels).subspan(first, bytesOf(grid));
+}
 
 std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::uint32_t side,
                                      std::uint32_t finer)

@@ -53,6 +53,16 @@ PENUMBRA_CONST std::uint64_t kMaxFieldBytes = 256u << 20;
 PENUMBRA_CONST float kMinFieldRadius = 1e-6f; // metres; 1/radius stays far from overflow
 PENUMBRA_CONST float kMaxCoordinate = 1e9f;   // metres; squares and cubes of it stay finite
 
+// Radius of a shell, bounding radii: see Sampling above.
+float shellRadius(const ShadowField& field, std::size_t shell);
+
+// What one step of the bytes is worth on a shell, by band: bandScale[l] * g(r).
+vec4 shellStep(const ShadowField& field, std::size_t shell);
+
+// Texels [y][x][16] of one grid, counted as they lie: (frame * channels + channel) * shells +
+// shell.
+std::span<const std::uint8_t> fieldGrid(const ShadowField& field, std::size_t grid);
+
 // A grid [y][x][16] of `side` as a reader sees it on a finer one: bilinear between nodes, rounded.
 std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::uint32_t side,
                                      std::uint32_t finer);

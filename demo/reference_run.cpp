@@ -37,14 +37,13 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances,
         for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
             if (cluster.firstReceiver + v >= mesh.firstReceiver + mesh.vertexCount)
                 break; // padding
-            const uvec4 texel = data.receivers[cluster.firstReceiver + v].geometry;
-            const vec3 local(uintBitsToFloat(texel.x), uintBitsToFloat(texel.y),
-                             uintBitsToFloat(texel.z));
+            const vec3 eye(constants.eye);
+            const Receiver shaded =
+                makeReceiver(g, data.receivers[cluster.firstReceiver + v].geometry, eye);
             ReferenceReceiver r;
-            r.position = affine(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, local);
-            r.normal = normalize(linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2,
-                                        unpackNormal(texel.w)));
-            r.toEye = normalize(vec3(constants.eye) - r.position);
+            r.position = shaded.position;
+            r.normal = normalize(shaded.normal);
+            r.toEye = normalize(eye - r.position);
             r.material = r.instance = cluster.instance;
             out.receivers.push_back(r);
             out.radianceIndex.push_back(cluster.firstRadiance + v);

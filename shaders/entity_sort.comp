@@ -29,13 +29,13 @@ void main()
     uint id[kMaxClusterOccluders];
     uint count = 0u, dropped = 0u;
     for (uint i = 0u; i < frame.instanceCount; ++i) {
-        const float influence = texelFetch(instanceTexels, int(i * kGpuInstanceTexels) + 3).w;
-        const vec4 sphere = texelFetch(instanceTexels, int(i * kGpuInstanceTexels));
-        const vec3 to = sphere.xyz - center;
+        const GpuInstance occluder = loadInstance(i);
+        const float influence = occluder.grid.w;
+        const vec3 to = occluder.sphere.xyz - center;
         const float distance = length(to);
         if (i == cluster.instance || influence == 0.0 || distance - radius > influence)
             continue;
-        if (belowHorizon(to, sphere.w, axis, b.vertices.w, radius))
+        if (belowHorizon(to, occluder.sphere.w, axis, b.vertices.w, radius))
             continue;
         uint at = min(count, kMaxClusterOccluders);
         if (count == kMaxClusterOccluders) {

@@ -46,15 +46,12 @@ void appendField(const ShadowField& field, SceneData& scene)
 
     scene.fieldSamples.resize(scene.fieldSamples.size() + std::size_t{side} * side * input.shells);
     uvec4* const samples = scene.fieldSamples.data() + input.firstSample;
-    const std::uint8_t* shell = field.texels.data();
     for (std::uint32_t s = 0; s < input.shells; ++s) {
-        const std::uint32_t from = field.shellSides[s];
         const std::vector<std::uint8_t> grid =
-            refineGrid({shell, std::size_t{from} * from * kFieldCoefficients}, from, side);
+            refineGrid(fieldGrid(field, s), field.shellSides[s], side);
         for (std::size_t node = 0; node < std::size_t{side} * side; ++node)
             std::memcpy(&samples[node * input.shells + s], &grid[node * kFieldCoefficients],
                         kFieldCoefficients);
-        shell += static_cast<std::size_t>(from) * from * 16;
     }
 }
 

@@ -27,9 +27,7 @@ PointSet shellPoints(const BakeOptions& options, const ShadowField& field)
     PointSet points;
     const float last = static_cast<float>(options.side - 1);
     for (std::uint32_t s = 0; s < options.shells; ++s) {
-        const float r = field.innerRadius *
-                        std::pow(field.outerRadius / field.innerRadius,
-                                 static_cast<float>(s) / static_cast<float>(options.shells - 1));
+        const float r = shellRadius(field, s);
         for (std::uint32_t y = 0; y < options.side; ++y) {
             for (std::uint32_t x = 0; x < options.side; ++x) {
                 const vec3 p = r * octahedralDirection(

@@ -45,7 +45,7 @@ int runValidate(const std::filesystem::path& file, bool json)
     const auto bytes = readFile(file, kMaxMeshAssetBytes);
     if (!bytes && json) {
         problems.push_back(bytes.error());
-    } else if (!bytes) {
+    } else if (!bytes) { // its message names the file already
         spdlog::error("{}", bytes.error().message);
         return kExitInput;
     } else if (!isEnvironmentFile(file)) {

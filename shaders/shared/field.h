@@ -10,8 +10,7 @@
 PENUMBRA_BEGIN
 
 // Grid of a field with one side on all shells, as the GPU holds it: samples [y][x][shell], so that
-// a cell's nodes on neighbouring shells share a cache line, and the cells that one cluster meets
-// lie close together (8 % of kernel `exact`).
+// a cell's nodes on neighbouring shells share a cache line (docs/decisions/0005).
 struct FieldGrid {
     uint firstSample;
     uint side;        // nodes per edge of the octahedral map
@@ -22,9 +21,8 @@ struct FieldGrid {
     uint shells;
 };
 
-// A point in the grid: sample index of the lower node of the cell and fractions in [0, 1] (but for
-// rounding, which the weights below round away) along u,
-// v and shell.
+// A point in the grid: sample index of the lower node of the cell and fractions along u, v and
+// shell, in [0, 1] but for rounding, which the weights below round away.
 struct FieldCell {
     uint sample0;
     vec3 fraction;
@@ -125,11 +123,10 @@ PENUMBRA_FN Sh4 fieldBlend(uvec4 s0, uvec4 s1, uvec4 s2, uvec4 s3, uvec4 weight)
     return f;
 }
 
-// Deviation in steps -> visibility. scale[l] = K_l * decay / 256, or K_l * decay for the trilinear
-// sum.
-PENUMBRA_FN Sh4 fieldVisibility(Sh4 f, vec4 scale)
+// Steps -> coefficients. scale[l] = K_l * decay / 256, or K_l * decay for the trilinear sum.
+PENUMBRA_FN Sh4 fieldDeviation(Sh4 f, vec4 scale)
 {
-    f.c[0] = f.c[0] * scale.x + kSqrt4Pi;
+    f.c[0] *= scale.x;
     for (int i = 1; i < 4; ++i)
         f.c[i] *= scale.y;
     for (int i = 4; i < 9; ++i)
@@ -137,6 +134,14 @@ PENUMBRA_FN Sh4 fieldVisibility(Sh4 f, vec4 scale)
     for (int i = 9; i < 16; ++i)
         f.c[i] *= scale.w;
     return f;
+}
+
+// The same, from "nothing in the way".
+PENUMBRA_FN Sh4 fieldVisibility(Sh4 f, vec4 scale)
+{
+    Sh4 visibility = fieldDeviation(f, scale);
+    visibility.c[0] += kSqrt4Pi;
+    return visibility;
 }
 
 // Coefficients of one sample as deviation in steps, q - 128.
