@@ -4,101 +4,224 @@
 
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <optional>
+#include <span>
 #include <tbb/parallel_for.h>
 
 namespace penumbra {
 
 namespace {
 
-using Grid = std::span<const std::uint8_t>; // [y][x][16]
+using Grid = std::vector<Sh4>; // [y][x]
 
 // Eq. (1) at one node.
-float difference(const std::uint8_t* a, const std::uint8_t* b, const vec4& step)
+float difference(const Sh4& a, const Sh4& b)
 {
-    Sh4 steps;
-    for (std::size_t k = 0; k < kFieldCoefficients; ++k)
-        steps.c[k] = static_cast<float>(a[k] - b[k]);
-    const ShNodal values = shNodes(fieldDeviation(steps, step));
+    Sh4 d;
+    for (int k = 0; k < 16; ++k)
+        d.c[k] = a.c[k] - b.c[k];
+    const ShNodal values = shNodes(d);
     float sum = 0;
     for (int n = 0; n < 32; ++n)
         sum += kShNodes[n].w * std::abs(values.v[n]);
     return sum / (4 * glm::pi<float>());
 }
 
-float largestDifference(Grid a, Grid b, const vec4& step)
+// Node (x, y) of a grid, also one step over an edge, where the octahedral map folds.
+const Sh4& nodeAt(const Grid& grid, int side, int x, int y)
 {
-    float largest = 0;
-    for (std::size_t i = 0; i < a.size(); i += kFieldCoefficients)
-        if (!std::equal(&a[i], &a[i] + kFieldCoefficients, &b[i]))
-            largest = std::max(largest, difference(&a[i], &b[i], step));
-    return largest;
+    const int last = side - 1;
+    if (x < 0 || x > last) {
+        x = x < 0 ? -x : 2 * last - x;
+        y = last - y;
+    }
+    if (y < 0 || y > last) {
+        y = y < 0 ? -y : 2 * last - y;
+        x = last - x;
+    }
+    return grid[static_cast<std::size_t>(y * side + x)];
 }
 
-std::vector<std::uint8_t> everySecondNode(Grid grid, std::uint32_t side)
+// Every second node: its value, or the mean around it with weights 1 2 1.
+Grid halved(const Grid& grid, std::uint32_t side, bool mean)
 {
-    std::vector<std::uint8_t> out;
-    for (std::uint32_t y = 0; y < side; y += 2)
-        for (std::uint32_t x = 0; x < side; x += 2) {
-            const std::uint8_t* node = &grid[(std::size_t{y} * side + x) * kFieldCoefficients];
-            out.insert(out.end(), node, node + kFieldCoefficients);
+    Grid out;
+    const int n = static_cast<int>(side);
+    for (int y = 0; y < n; y += 2)
+        for (int x = 0; x < n; x += 2) {
+            if (!mean) {
+                out.push_back(nodeAt(grid, n, x, y));
+                continue;
+            }
+            Sh4 sum{};
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) {
+                    const float weight = static_cast<float>((2 - i * i) * (2 - j * j)) / 16.0f;
+                    const Sh4& node = nodeAt(grid, n, x + i, y + j);
+                    for (int k = 0; k < 16; ++k)
+                        sum.c[k] += weight * node.c[k];
+                }
+            out.push_back(sum);
         }
     return out;
 }
 
-struct AdaptedShell {
-    std::uint32_t side = 0;
-    float worst = 0;
-    std::vector<std::vector<std::uint8_t>> grids; // [frame * channel]
-};
-
-// `grids` [frame * channel]: the same shell of all of them.
-AdaptedShell adaptShell(const std::vector<Grid>& grids, std::uint32_t side, const vec4& step,
-                        float threshold)
-{
-    AdaptedShell adapted{side};
-    for (const Grid grid : grids)
-        adapted.grids.emplace_back(grid.begin(), grid.end());
-    while (adapted.side > kMinAdaptedSide) {
-        const std::uint32_t half = (adapted.side + 1) / 2;
-        AdaptedShell coarser{half};
-        for (std::size_t i = 0; i < grids.size(); ++i) {
-            coarser.grids.push_back(everySecondNode(adapted.grids[i], adapted.side));
-            coarser.worst =
-                std::max(coarser.worst, largestDifference(refineGrid(coarser.grids[i], half, side),
-                                                          grids[i], step));
+class Adapter {
+public:
+    Adapter(const FieldSamples& field, float limit) : m_field(field), m_limit(limit)
+    {
+        const ShadowField& head = field.head;
+        m_shells = head.shellSides.size();
+        m_fields = std::size_t{head.channels} * head.frames;
+        for (std::size_t s = 0; s < m_shells; ++s) {
+            const float r = shellRadius(head, s);
+            m_decay.push_back(fieldDecay(r * r));
         }
-        if (coarser.worst >= threshold)
-            break;
-        adapted = std::move(coarser);
     }
-    return adapted;
-}
+
+    void chooseSides()
+    {
+        m_adapted.resize(m_shells);
+        tbb::parallel_for(std::size_t{0}, m_shells,
+                          [&](std::size_t s) { m_adapted[s] = adaptShell(s); });
+    }
+
+    // The farthest shell that linear interpolation reaches from each kept one.
+    void dropShells()
+    {
+        for (std::size_t from = 0; from + 2 < m_shells;) {
+            std::size_t to = from + 1;
+            while (to + 1 < m_shells && canDropBetween(from, to + 1))
+                ++to;
+            for (std::size_t s = from + 1; s < to; ++s)
+                m_adapted[s].side = 0;
+            from = to;
+        }
+    }
+
+    AdaptReport write(FieldSamples& out)
+    {
+        AdaptReport report;
+        const std::uint64_t side = largestSide(out.head);
+        report.bytesFixed = side * side * m_shells * m_fields * kFieldCoefficients;
+        out.nodes.clear();
+        out.inside.clear();
+        for (std::size_t f = 0; f < m_fields; ++f)
+            for (const Shell& shell : m_adapted)
+                if (shell.side > 0)
+                    out.nodes.insert(out.nodes.end(), shell.grids[f].begin(), shell.grids[f].end());
+        for (std::size_t s = 0; s < m_shells; ++s) {
+            out.head.shellSides[s] = static_cast<std::uint16_t>(m_adapted[s].side);
+            report.worst = std::max(report.worst, m_adapted[s].worst);
+            report.shellsDropped += m_adapted[s].side == 0 ? 1 : 0;
+        }
+        report.bytes = fieldTexelBytes(out.head);
+        return report;
+    }
+
+private:
+    struct Shell {
+        std::uint32_t side = 0;
+        float worst = 0;
+        std::vector<Grid> grids; // [frame * channel]
+    };
+
+    [[nodiscard]] std::span<const Sh4> original(std::size_t f, std::size_t s) const
+    {
+        const std::size_t side = m_field.head.shellSides[s];
+        return std::span(m_field.nodes)
+            .subspan(firstNode(m_field.head, f * m_shells + s), side * side);
+    }
+
+    // Largest error of a shell against the original; none if one is beyond the limit.
+    [[nodiscard]] std::optional<float> error(std::size_t f, std::size_t s, const Grid& fine) const
+    {
+        const auto nodes = original(f, s);
+        const std::size_t first = firstNode(m_field.head, f * m_shells + s);
+        float largest = 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (!m_field.inside.empty() && m_field.inside[first + i])
+                continue;
+            const float here = difference(fine[i], nodes[i]);
+            if (!(here < m_limit))
+                return std::nullopt;
+            largest = std::max(largest, here);
+        }
+        return largest;
+    }
+
+    [[nodiscard]] Shell adaptShell(std::size_t s) const
+    {
+        const std::uint32_t side = m_field.head.shellSides[s];
+        Shell adapted{side};
+        for (std::size_t f = 0; f < m_fields; ++f)
+            adapted.grids.emplace_back(original(f, s).begin(), original(f, s).end());
+        while (adapted.side > kMinAdaptedSide) {
+            std::optional<Shell> best;
+            for (const bool mean : {true, false}) {
+                Shell coarser{(adapted.side + 1) / 2};
+                bool fits = true;
+                for (std::size_t f = 0; f < m_fields && fits; ++f) {
+                    coarser.grids.push_back(halved(adapted.grids[f], adapted.side, mean));
+                    const auto worst =
+                        error(f, s, refineNodes(coarser.grids[f], coarser.side, side));
+                    fits = worst.has_value();
+                    coarser.worst = std::max(coarser.worst, worst.value_or(0));
+                }
+                if (fits && (!best || coarser.worst < best->worst))
+                    best = std::move(coarser);
+            }
+            if (!best)
+                break;
+            adapted = std::move(*best);
+        }
+        return adapted;
+    }
+
+    // Whether all shells between two kept ones are close enough to what lies between those.
+    [[nodiscard]] bool canDropBetween(std::size_t from, std::size_t to)
+    {
+        std::vector<char> fits(to - from - 1, 1);
+        std::vector<float> worst(to - from - 1, 0);
+        tbb::parallel_for(from + 1, to, [&](std::size_t s) {
+            const std::uint32_t side = m_field.head.shellSides[s];
+            const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
+            for (std::size_t f = 0; f < m_fields; ++f) {
+                Grid value = refineNodes(m_adapted[from].grids[f], m_adapted[from].side, side);
+                const Grid high = refineNodes(m_adapted[to].grids[f], m_adapted[to].side, side);
+                // Linear in the quantised values, which are the coefficients over g(r).
+                const float a = (1 - t) * m_decay[s] / m_decay[from];
+                const float b = t * m_decay[s] / m_decay[to];
+                for (std::size_t i = 0; i < value.size(); ++i)
+                    for (int k = 0; k < 16; ++k)
+                        value[i].c[k] = a * value[i].c[k] + b * high[i].c[k];
+                const auto largest = error(f, s, value);
+                fits[s - from - 1] = largest.has_value() ? fits[s - from - 1] : 0;
+                worst[s - from - 1] = std::max(worst[s - from - 1], largest.value_or(0));
+            }
+        });
+        if (std::find(fits.begin(), fits.end(), 0) != fits.end())
+            return false;
+        for (std::size_t s = from + 1; s < to; ++s)
+            m_adapted[s].worst = worst[s - from - 1];
+        return true;
+    }
+
+    const FieldSamples& m_field;
+    float m_limit;
+    std::size_t m_shells = 0, m_fields = 0;
+    std::vector<float> m_decay; // [shell]
+    std::vector<Shell> m_adapted;
+};
 
 } // namespace
 
-AdaptReport adaptShells(ShadowField& field, float threshold)
+AdaptReport adaptShells(FieldSamples& field, float threshold, float unit)
 {
-    const std::size_t shells = field.shellSides.size();
-    const std::size_t fields = std::size_t{field.channels} * field.frames;
-    std::vector<AdaptedShell> adapted(shells);
-    tbb::parallel_for(std::size_t{0}, shells, [&](std::size_t s) {
-        std::vector<Grid> grids;
-        for (std::size_t f = 0; f < fields; ++f)
-            grids.push_back(fieldGrid(field, f * shells + s));
-        adapted[s] = adaptShell(grids, field.shellSides[s], shellStep(field, s), threshold);
-    });
-
-    AdaptReport report{field.texels.size()};
-    field.texels.clear();
-    for (std::size_t f = 0; f < fields; ++f)
-        for (const AdaptedShell& shell : adapted)
-            field.texels.insert(field.texels.end(), shell.grids[f].begin(), shell.grids[f].end());
-    for (std::size_t s = 0; s < shells; ++s) {
-        field.shellSides[s] = static_cast<std::uint16_t>(adapted[s].side);
-        report.worst = std::max(report.worst, adapted[s].worst);
-    }
-    report.bytesAfter = field.texels.size();
-    return report;
+    Adapter adapter(field, threshold * unit);
+    adapter.chooseSides();
+    adapter.dropShells();
+    return adapter.write(field);
 }
 
 } // namespace penumbra

@@ -1,8 +1,8 @@
 // Adaptive shells: Tamura et al. 2006, section 4. Occlusion varies slowly far from an object, so
-// most shells need a coarser grid than those near it.
+// most shells need a coarser grid than those near it, and some none at all.
 #pragma once
 
-#include "assets/shadow_field.h"
+#include "assetc/bake/field_samples.h"
 
 namespace penumbra {
 
@@ -11,17 +11,25 @@ constexpr float kDefaultAdaptThreshold = 0.010f; // Tamura et al. 2006, section 
 constexpr std::uint32_t kMinAdaptedSide = 9;
 
 struct AdaptReport {
-    std::uint64_t bytesBefore = 0; // of the texels
-    std::uint64_t bytesAfter = 0;
+    std::uint64_t bytesFixed = 0; // of the texels, if all shells had the largest side
+    std::uint64_t bytes = 0;
+    std::uint32_t shellsDropped = 0;
     float worst = 0; // largest Eq. (1) error of a replaced node
 };
 
 // Halves the grid of every shell, 65 to 33, 17, 9 nodes, while the error at every node of the first
-// grid stays below `threshold`. The error is Eq. (1), the mean over all directions of the absolute
-// difference between the node's function and what the coarser grid gives there,
+// grid stays below `threshold`; then drops shells, from the inside on, while the error at every
+// node of every dropped one does. A dropped shell has side 0, and is what lies between its
+// neighbours, linear in the shell's index and in the quantised values (assets/shadow_field.h).
+//
+// The error is Eq. (1), the mean over all directions of the absolute difference between the node's
+// function and what the coarser field gives there,
 //     Error = 1 / (4 pi) integral |sum_g (O'_g - O_g) Psi_g(w)| dw,
-// on the quantised values, by the 32-point rule. Sides are 2^k + 1, so the coarser grid's nodes are
-// nodes of the finer one. All channels and frames of a shell keep one side.
-AdaptReport adaptShells(ShadowField& field, float threshold);
+// by the 32-point rule. Nodes inside the object do not count. Sides are 2^k + 1, so the coarser
+// grid's nodes are nodes of the finer one; they take the value there or the mean around it, as in
+// the paper, whichever errs less. All channels and frames of a shell keep one side.
+//
+// `unit`: what the threshold is measured in; 1 for visibility.
+AdaptReport adaptShells(FieldSamples& field, float threshold, float unit = 1);
 
 } // namespace penumbra

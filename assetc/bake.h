@@ -5,10 +5,16 @@
 // too, and every vertex. Deterministic for any thread count.
 #pragma once
 
+#include "assetc/bake/field_samples.h"
+#include "assetc/bake/probes.h"
 #include "assetc/progress.h"
 #include "assets/mesh_asset.h"
 
 namespace penumbra {
+
+// Sides of the shells before any is made coarser. Inside half the bounding radius a grid of half
+// the side is as fine, in metres, as the full one outside.
+std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side);
 
 struct BakeOptions {
     std::uint32_t shells = 32;
@@ -20,7 +26,8 @@ struct BakeOptions {
 
 struct BakeResult {
     std::vector<SelfVisibility> selfVisibility; // [vertexCount]
-    ShadowField field;
+    FieldSamples field;                         // no nodes without options.field
+    std::vector<Probe> probes;                  // the exact field off the grid
 };
 
 // `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid. Uses the TBB arena of

@@ -1,5 +1,6 @@
 #include "assetc/compile.h"
 
+#include "assetc/field_errors.h"
 #include "assetc/import/import.h"
 
 #include <chrono>
@@ -34,6 +35,8 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
     CompiledAsset asset;
     CompileReport& report = asset.report;
     MeshAsset& mesh = asset.mesh;
+    FieldSamples field;
+    std::vector<Probe> probes;
     {
         // Triangles of the whole file in its world space.
         const StageTimer timer(report.times, "import");
@@ -63,26 +66,35 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
             return fail(quantised.error(), source.string());
     }
+    BakeOptions bake = options.bake;
+    float threshold = options.adaptThreshold;
+    if (options.targetError && bake.field) {
+        const StageTimer timer(report.times, "target");
+        report.target = reachError(mesh, *options.targetError, bake, threshold, progress);
+        if (!report.target->reached)
+            report.warnings.push_back(
+                fmt::format("the error stays at {:.4f}, above {}: see the report",
+                            report.target->trials.back().error, *options.targetError));
+    }
     {
         // Self-visibility of the vertices and the field of the space around.
         const StageTimer timer(report.times, "bake");
-        BakeResult baked =
-            bakeMesh(mesh.positions, mesh.normals, mesh.indices, options.bake, progress);
+        BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, bake, progress);
         mesh.selfVisibility = std::move(baked.selfVisibility);
-        if (options.bake.field)
-            mesh.field = std::move(baked.field);
-    }
-    if (mesh.field && options.adaptThreshold > 0) {
-        // Coarser grids for the shells that do without the fine one.
-        const StageTimer timer(report.times, "adapt");
-        report.adapt = adaptShells(*mesh.field, options.adaptThreshold);
+        field = std::move(baked.field);
+        probes = std::move(baked.probes);
     }
     if (options.verify) {
         const StageTimer timer(report.times, "verify");
-        const auto verified = verifyBake(mesh);
-        if (!verified)
-            return fail(verified.error(), source.string());
-        report.verify = *verified;
+        report.verify = verifyBake(mesh, field);
+    }
+    if (bake.field) {
+        // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
+        const StageTimer timer(report.times, "adapt");
+        if (threshold > 0)
+            report.adapt = adaptShells(field, threshold);
+        mesh.field = quantiseField(field);
+        mesh.field->errors = measureErrors(field, *mesh.field, probes);
     }
     {
         const StageTimer timer(report.times, "encode");

@@ -5,6 +5,7 @@
 #include "assetc/bake.h"
 #include "assetc/import/clean.h"
 #include "assetc/order.h"
+#include "assetc/target_error.h"
 #include "assetc/verify.h"
 #include "assets/mesh_codec.h"
 
@@ -15,6 +16,7 @@ namespace penumbra {
 struct CompileOptions {
     BakeOptions bake;
     float adaptThreshold = kDefaultAdaptThreshold; // 0: all shells keep the bake's side
+    std::optional<float> targetError; // sets shells, side, directions and threshold instead
     MeshEncodeOptions encode;
     bool verify = false;
 };
@@ -28,6 +30,7 @@ struct StageTime {
 struct CompileReport {
     CleanReport clean;
     OrderReport order;
+    std::optional<TargetReport> target;
     std::optional<AdaptReport> adapt;
     std::optional<VerifyReport> verify;
     std::vector<StageTime> times;

@@ -55,6 +55,11 @@ int run(int argc, char** argv)
                      "shells keep --max-side")
         ->check(CLI::Range(0.0f, 1.0f))
         ->capture_default_str();
+    bakeCommand
+        ->add_option("--target-error", bake.options.targetError,
+                     "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
+                     "threshold")
+        ->check(CLI::Range(1e-4f, 1.0f));
     CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
     bakeCommand
         ->add_flag("--verify", bake.options.verify,

@@ -19,20 +19,37 @@ std::string text(const Json& json)
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// The causes in the order in which they are printed.
+std::array<std::pair<const char*, FieldError>, 6> causesOf(const FieldErrors& errors)
+{
+    return {{{"total", errors.total},
+             {"angular", errors.angular},
+             {"radial", errors.radial},
+             {"quantisation", errors.quantisation},
+             {"directions", errors.directions},
+             {"bandLimit", errors.bandLimit}}};
+}
+
 Json fieldJson(const ShadowField& field)
 {
-    return {{"kind", field.kind == FieldKind::Occlusion ? "occlusion" : "radiance"},
-            {"shells", field.shellSides.size()},
-            {"sides", field.shellSides},
-            {"channels", field.channels},
-            {"frames", field.frames},
-            {"center", vectorJson(field.center)},
-            {"radius", field.radius},
-            {"innerRadius", field.innerRadius},
-            {"outerRadius", field.outerRadius},
-            {"bandScale", field.bandScale},
-            {"directions", field.directions},
-            {"bytes", field.texels.size()}};
+    Json result = {{"kind", field.kind == FieldKind::Occlusion ? "occlusion" : "radiance"},
+                   {"shells", field.shellSides.size()},
+                   {"sides", field.shellSides},
+                   {"channels", field.channels},
+                   {"frames", field.frames},
+                   {"center", vectorJson(field.center)},
+                   {"radius", field.radius},
+                   {"innerRadius", field.innerRadius},
+                   {"outerRadius", field.outerRadius},
+                   {"bandScale", field.bandScale},
+                   {"directions", field.directions},
+                   {"bytes", field.texels.size()}};
+    if (field.errors) {
+        result["errors"]["points"] = field.errors->points;
+        for (const auto& [cause, error] : causesOf(*field.errors))
+            result["errors"][cause] = {{"rms", error.rms}, {"max", error.max}};
+    }
+    return result;
 }
 
 Json assetJson(const MeshAsset& mesh, std::size_t fileBytes)
@@ -67,7 +84,9 @@ std::string sidesText(const ShadowField& field)
             ++i;
             ++run;
         }
-        sides += fmt::format("{}{} of {}²", sides.empty() ? "" : ", ", run, field.shellSides[i]);
+        sides += sides.empty() ? "" : ", ";
+        sides += field.shellSides[i] == 0 ? fmt::format("{} left out", run)
+                                          : fmt::format("{} of {}²", run, field.shellSides[i]);
     }
     return sides;
 }
@@ -83,9 +102,21 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
     result["clean"] = {{"degenerateTriangles", report.clean.degenerateTriangles},
                        {"mergedVertices", report.clean.mergedVertices},
                        {"generatedNormals", report.clean.generatedNormals}};
+    if (report.target) {
+        result["target"]["reached"] = report.target->reached;
+        for (const TargetTrial& trial : report.target->trials)
+            result["target"]["trials"].push_back({{"shells", trial.options.shells},
+                                                  {"side", trial.options.side},
+                                                  {"directions", trial.options.directions},
+                                                  {"threshold", trial.threshold},
+                                                  {"error", trial.error},
+                                                  {"bytes", trial.bytes},
+                                                  {"seconds", trial.seconds}});
+    }
     if (report.adapt)
-        result["adapt"] = {{"bytesFixed", report.adapt->bytesBefore},
-                           {"bytes", report.adapt->bytesAfter},
+        result["adapt"] = {{"bytesFixed", report.adapt->bytesFixed},
+                           {"bytes", report.adapt->bytes},
+                           {"shellsDropped", report.adapt->shellsDropped},
                            {"worst", report.adapt->worst}};
     if (report.verify)
         result["verify"] = {{"samples", report.verify->samples},
@@ -130,6 +161,13 @@ std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool jso
                        "(open: c0 = 3.545)\n",
                        field.bandScale[0] / 1.25f, field.bandScale[1] / 1.25f,
                        field.bandScale[2] / 1.25f, field.bandScale[3] / 1.25f);
+    if (!field.errors)
+        return out;
+    out += fmt::format("errors    at {} random points, in visibility (rms over all directions)\n",
+                       field.errors->points);
+    for (const auto& [cause, error] : causesOf(*field.errors))
+        out +=
+            fmt::format("          {:<13} rms {:.4f}  max {:.3f}\n", cause, error.rms, error.max);
     return out;
 }
 

@@ -84,42 +84,44 @@ Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& direct
     return visibility;
 }
 
-// A drawn sample: where it lies and what the field stores there.
+// A drawn node: where it lies and what was baked there.
 struct Sample {
     vec3 position{0}; // object space, metres
     float radius = 0; // bounding radii
-    Sh4 stored{};
+    Sh4 baked{};
 };
 
-Sample drawSample(const ShadowField& field, std::mt19937& random)
+Sample drawSample(const FieldSamples& field, std::mt19937& random)
 {
-    const std::size_t shell = random() % field.shellSides.size();
-    const std::size_t side = field.shellSides[shell];
+    const std::size_t shell = random() % field.head.shellSides.size();
+    const std::size_t side = field.head.shellSides[shell];
     const std::size_t x = random() % side;
     const std::size_t y = random() % side;
-    const auto texel =
-        fieldGrid(field, shell).subspan((y * side + x) * kFieldCoefficients, kFieldCoefficients);
+    const std::size_t node = firstNode(field.head, shell) + y * side + x;
+    if (field.inside[node])
+        return drawSample(field, random);
 
     Sample sample;
-    sample.radius = shellRadius(field, shell);
+    sample.radius = shellRadius(field.head, shell);
     const vec2 uv =
         vec2(static_cast<float>(x), static_cast<float>(y)) / static_cast<float>(side - 1);
-    sample.position = field.center + field.radius * sample.radius * octahedralDirection(uv);
-    for (std::size_t i = 0; i < texel.size(); ++i)
-        sample.stored.c[i] = static_cast<float>(texel[i]) - 128.0f;
-    sample.stored = fieldVisibility(sample.stored, shellStep(field, shell));
+    sample.position =
+        field.head.center + field.head.radius * sample.radius * octahedralDirection(uv);
+    sample.baked = field.nodes[node];
+    sample.baked.c[0] += kSqrt4Pi;
     return sample;
 }
 
 } // namespace
 
-Result<VerifyReport> verifyBake(const MeshAsset& mesh, const VerifyOptions& options)
+VerifyReport verifyBake(const MeshAsset& mesh, const FieldSamples& field,
+                        const VerifyOptions& options)
 {
-    if (!mesh.field || mesh.field->kind != FieldKind::Occlusion || mesh.field->directions < 2 ||
-        mesh.field->directions % 2 != 0)
-        return Error{"no occlusion field to verify"};
-    const ShadowField& field = *mesh.field;
-    const std::vector<vec3> directions = bakeDirections(field.directions);
+    PENUMBRA_ASSERT(field.inside.size() == field.nodes.size() &&
+                        std::find(field.inside.begin(), field.inside.end(), false) !=
+                            field.inside.end(),
+                    "no node to verify of {}", field.nodes.size());
+    const std::vector<vec3> directions = bakeDirections(field.head.directions);
     std::vector<Sh4> basis;
     for (const vec3 direction : directions)
         basis.push_back(shBasis(direction));
@@ -134,11 +136,11 @@ Result<VerifyReport> verifyBake(const MeshAsset& mesh, const VerifyOptions& opti
         traced[i] = traceVisibility(embree.scene, samples[i].position, directions, basis);
     });
 
-    VerifyReport report{options.samples, field.directions};
+    VerifyReport report{options.samples, field.head.directions};
     double squares = 0;
     for (std::size_t i = 0; i < samples.size(); ++i)
         for (int k = 0; k < 16; ++k) {
-            const float difference = std::abs(samples[i].stored.c[k] - traced[i].c[k]);
+            const float difference = std::abs(samples[i].baked.c[k] - traced[i].c[k]);
             squares += static_cast<double>(difference) * difference;
             if (difference > report.max) {
                 report.max = difference;

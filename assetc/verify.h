@@ -1,6 +1,7 @@
 // An independent check of a baked field: rays instead of rasters.
 #pragma once
 
+#include "assetc/bake/field_samples.h"
 #include "assets/mesh_asset.h"
 
 namespace penumbra {
@@ -10,7 +11,7 @@ struct VerifyOptions {
     std::uint32_t seed = 1;
 };
 
-// Stored coefficients against coefficients from rays; unit: visibility (an open sphere has c_0 =
+// Baked coefficients against coefficients from rays; unit: visibility (an open sphere has c_0 =
 // sqrt(4 pi) = 3.54).
 struct VerifyReport {
     std::uint32_t samples = 0;
@@ -20,9 +21,12 @@ struct VerifyReport {
     float worstRadius = 0; // where the maximum is, bounding radii
 };
 
-// Traces mesh.field->directions rays from each drawn sample with Embree. The difference holds the
-// 8-bit quantisation and the raster's resolution, not the number of directions, which are the same.
-// Error: a mesh without an occlusion field. Deterministic for any thread count.
-Result<VerifyReport> verifyBake(const MeshAsset& mesh, const VerifyOptions& options = {});
+// Traces field.head.directions rays from each drawn node of the field as it was baked, before
+// adaptation and quantisation, with Embree; nodes inside the mesh are not drawn. Near the object
+// the directions are the same, and the difference is that of the raster; far from it the bake takes
+// whole cells of directions, and the difference holds the noise of the rays. Deterministic for any
+// thread count.
+VerifyReport verifyBake(const MeshAsset& mesh, const FieldSamples& field,
+                        const VerifyOptions& options = {});
 
 } // namespace penumbra

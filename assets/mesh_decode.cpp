@@ -65,6 +65,21 @@ void checkVersion(const JsonReader& extension)
             version, kFormatMajor));
 }
 
+FieldErrors readErrors(const JsonReader& errors)
+{
+    const auto read = [&](const char* cause) {
+        const JsonReader error = errors.member(cause);
+        return FieldError{error.number("rms", 0, 1e6f), error.number("max", 0, 1e6f)};
+    };
+    return {static_cast<std::uint32_t>(errors.count("points", 1u << 30)),
+            read("total"),
+            read("angular"),
+            read("radial"),
+            read("quantisation"),
+            read("directions"),
+            read("bandLimit")};
+}
+
 ShadowField readFieldHead(const JsonReader& extension)
 {
     constexpr float kAnyFloat =
@@ -86,6 +101,8 @@ ShadowField readFieldHead(const JsonReader& extension)
     field.frames = static_cast<std::uint32_t>(extension.count("frames", kMaxFieldFrames));
     field.directions =
         static_cast<std::uint32_t>(extension.count("directions", kMaxFieldDirections));
+    if (extension.has("errors"))
+        field.errors = readErrors(extension.member("errors"));
     const JsonReader scales = extension.member("bandScale");
     for (std::size_t band = 0; band < field.bandScale.size(); ++band)
         field.bandScale[band] = scales.element(band).asNumber(0, kAnyFloat);

@@ -49,21 +49,38 @@ json materialJson(const MeshMaterial& material)
     return result;
 }
 
+json errorsJson(const FieldErrors& errors)
+{
+    const auto pair = [](const FieldError& error) {
+        return json{{"rms", error.rms}, {"max", error.max}};
+    };
+    return {{"points", errors.points},
+            {"total", pair(errors.total)},
+            {"angular", pair(errors.angular)},
+            {"radial", pair(errors.radial)},
+            {"quantisation", pair(errors.quantisation)},
+            {"directions", pair(errors.directions)},
+            {"bandLimit", pair(errors.bandLimit)}};
+}
+
 json fieldJson(const ShadowField& field)
 {
-    return {{"kind", field.kind == FieldKind::Occlusion ? "occlusion" : "radiance"},
-            {"basis", "sh4"},
-            {"center", vectorJson(field.center)},
-            {"radius", field.radius},
-            {"innerRadius", field.innerRadius},
-            {"outerRadius", field.outerRadius},
-            {"shellSides", field.shellSides},
-            {"bandScale", field.bandScale},
-            {"channels", field.channels},
-            {"frames", field.frames},
-            {"directions", field.directions},
-            {"encoding", kFieldEncoding},
-            {"byteLength", field.texels.size()}};
+    json result = {{"kind", field.kind == FieldKind::Occlusion ? "occlusion" : "radiance"},
+                   {"basis", "sh4"},
+                   {"center", vectorJson(field.center)},
+                   {"radius", field.radius},
+                   {"innerRadius", field.innerRadius},
+                   {"outerRadius", field.outerRadius},
+                   {"shellSides", field.shellSides},
+                   {"bandScale", field.bandScale},
+                   {"channels", field.channels},
+                   {"frames", field.frames},
+                   {"directions", field.directions},
+                   {"encoding", kFieldEncoding},
+                   {"byteLength", field.texels.size()}};
+    if (field.errors)
+        result["errors"] = errorsJson(*field.errors);
+    return result;
 }
 
 // Accessors of the Draco attributes, which have no bufferView of their own, and the primitive that

@@ -75,6 +75,35 @@ std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::
     return out;
 }
 
+std::uint32_t largestSide(const ShadowField& field)
+{
+    return *std::max_element(field.shellSides.begin(), field.shellSides.end());
+}
+
+std::vector<std::uint8_t> refineField(const ShadowField& field, std::size_t grid)
+{
+    const std::size_t shells = field.shellSides.size(), side = largestSide(field);
+    const std::size_t bytes = side * side * kFieldCoefficients;
+    std::vector<std::uint8_t> out(shells * bytes);
+    std::size_t kept = 0; // the last shell before s that is there
+    for (std::size_t s = 0; s < shells; ++s) {
+        if (field.shellSides[s] == 0)
+            continue;
+        const auto refined = refineGrid(fieldGrid(field, grid * shells + s), field.shellSides[s],
+                                        static_cast<std::uint32_t>(side));
+        std::copy(refined.begin(), refined.end(), &out[s * bytes]);
+        for (std::size_t between = kept + 1; between < s; ++between) {
+            const std::uint32_t a = static_cast<std::uint32_t>(s - between),
+                                b = static_cast<std::uint32_t>(between - kept);
+            for (std::size_t i = 0; i < bytes; ++i)
+                out[between * bytes + i] = static_cast<std::uint8_t>(
+                    (a * out[kept * bytes + i] + b * refined[i] + (a + b) / 2) / (a + b));
+        }
+        kept = s;
+    }
+    return out;
+}
+
 std::uint64_t fieldTexelBytes(const ShadowField& field)
 {
     std::uint64_t nodes = 0;
@@ -110,7 +139,11 @@ Result<void> validateFieldHead(const ShadowField& field)
     if (field.shellSides.size() < 2 || field.shellSides.size() > kMaxFieldShells)
         return Error{fmt::format("field: {} shells, allowed 2 to {}", field.shellSides.size(),
                                  kMaxFieldShells)};
+    if (field.shellSides.front() == 0 || field.shellSides.back() == 0)
+        return Error{"field: the first and the last shell cannot be left out"};
     for (const std::uint32_t side : field.shellSides) {
+        if (side == 0)
+            continue; // left out
         const bool powerOfTwo = side >= 3 && ((side - 1) & (side - 2)) == 0;
         if (!powerOfTwo || side > kMaxFieldSide)
             return Error{fmt::format("field: shell side {} is not 2^k + 1 from 3 to {}", side,
@@ -129,6 +162,12 @@ Result<void> validateField(const ShadowField& field)
 {
     if (Result<void> head = validateFieldHead(field); !head)
         return head;
+    if (field.errors)
+        for (const FieldError& error :
+             {field.errors->total, field.errors->angular, field.errors->radial,
+              field.errors->quantisation, field.errors->directions, field.errors->bandLimit})
+            if (!inRange(error.rms, 0, 1e6f) || !inRange(error.max, 0, 1e6f))
+                return Error{"field: an error that is not a number from 0 to 1e6"};
     if (field.texels.size() != fieldTexelBytes(field))
         return Error{fmt::format("field: {} texel bytes, the shells need {}", field.texels.size(),
                                  fieldTexelBytes(field))};

@@ -5,6 +5,8 @@
 // Sampling. Shell s of n lies at radius innerRadius * (outerRadius / innerRadius)^(s / (n - 1)), in
 // bounding radii. Its grid has side^2 nodes over the octahedral map, nodes ON the edges:
 //     node (x, y) has u = x / (side - 1), v = y / (side - 1)
+// A shell that is left out (side 0; never the first or last) is what its neighbours give, linear in
+// the shell's index and in the quantised values below.
 // Quantisation. Coefficient i of band l at radius r (in bounding radii) is
 //     c_i = unoccluded_i + bandScale[l] * g(r) * (q_i - 128),    g(r) = 1 / (0.25 + r^2)
 // with unoccluded = (sqrt(4 pi), 0, …) for an occlusion field and 0 for a radiance field. Both
@@ -16,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,11 +26,23 @@ namespace penumbra {
 
 enum class FieldKind : std::uint8_t { Occlusion, Radiance };
 
-// Error of the stored field against the exact one at random points off the grid, in SH coefficients
-// (unit: visibility).
+// Of a field against the exact one, over random points off the grid. At a point the error is the
+// root mean square over all directions, sqrt(sum_i d_i^2 / 4 pi) for a difference d of
+// coefficients; unit: visibility.
 struct FieldError {
     float rms = 0;
     float max = 0;
+};
+
+// Measured by the bake (assetc/field_errors.h).
+struct FieldErrors {
+    std::uint32_t points = 0; // that see something
+    FieldError total;         // what a reader gets, against the exact coefficients
+    FieldError angular;       // on a shell, between its nodes
+    FieldError radial;        // between exact shells
+    FieldError quantisation;  // by the bytes
+    FieldError directions;    // by the finite number of directions; not in `total`
+    FieldError bandLimit;     // what order 4 cannot hold of the visibility; not in `total`
 };
 
 struct ShadowField {
@@ -39,9 +54,10 @@ struct ShadowField {
     float innerRadius = 0.2f;              // first shell, bounding radii
     float outerRadius = 8.0f;              // last shell, bounding radii
     std::array<float, 4> bandScale{};      // K of band 0..3
-    std::vector<std::uint16_t> shellSides; // [shellCount] grid side, 2^k + 1
+    std::vector<std::uint16_t> shellSides; // [shellCount] grid side, 2^k + 1; 0: left out
     std::vector<std::uint8_t> texels;      // [frames][channels][shell][y][x][16], inner shell first
     std::uint32_t directions = 0;          // directions per sample of the bake
+    std::optional<FieldErrors> errors;
 };
 
 PENUMBRA_CONST std::uint32_t kFieldCoefficients = 16;
@@ -66,6 +82,11 @@ std::span<const std::uint8_t> fieldGrid(const ShadowField& field, std::size_t gr
 // A grid [y][x][16] of `side` as a reader sees it on a finer one: bilinear between nodes, rounded.
 std::vector<std::uint8_t> refineGrid(std::span<const std::uint8_t> texels, std::uint32_t side,
                                      std::uint32_t finer);
+
+// One frame and channel on the side of the largest shell, left out shells included:
+// [shell][y][x][16]. `grid`: frame * channels + channel.
+std::vector<std::uint8_t> refineField(const ShadowField& field, std::size_t grid);
+std::uint32_t largestSide(const ShadowField& field);
 
 // Bytes that `texels` must have for the field's sides, channels and frames.
 std::uint64_t fieldTexelBytes(const ShadowField& field);

@@ -27,11 +27,10 @@ void appendReceivers(const MeshAsset& mesh, MeshRange& range,
 }
 
 // Kernels step through a cell of 2 x 2 x 2 nodes with fixed strides, so all shells get the side of
-// the largest: a coarser shell is refined by bilinear interpolation, which is what a reader of the
-// coarse shell would see.
+// the largest, and none is left out.
 void appendField(const ShadowField& field, SceneData& scene)
 {
-    const std::uint32_t side = *std::max_element(field.shellSides.begin(), field.shellSides.end());
+    const std::uint32_t side = largestSide(field);
     FieldInput input{};
     input.center = field.center;
     input.radius = field.radius;
@@ -46,13 +45,12 @@ void appendField(const ShadowField& field, SceneData& scene)
 
     scene.fieldSamples.resize(scene.fieldSamples.size() + std::size_t{side} * side * input.shells);
     uvec4* const samples = scene.fieldSamples.data() + input.firstSample;
-    for (std::uint32_t s = 0; s < input.shells; ++s) {
-        const std::vector<std::uint8_t> grid =
-            refineGrid(fieldGrid(field, s), field.shellSides[s], side);
-        for (std::size_t node = 0; node < std::size_t{side} * side; ++node)
-            std::memcpy(&samples[node * input.shells + s], &grid[node * kFieldCoefficients],
-                        kFieldCoefficients);
-    }
+    const std::size_t nodes = std::size_t{side} * side;
+    const std::vector<std::uint8_t> texels = refineField(field, 0);
+    for (std::size_t s = 0; s < input.shells; ++s)
+        for (std::size_t node = 0; node < nodes; ++node)
+            std::memcpy(&samples[node * input.shells + s],
+                        &texels[(s * nodes + node) * kFieldCoefficients], kFieldCoefficients);
 }
 
 } // namespace

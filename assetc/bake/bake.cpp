@@ -3,13 +3,14 @@
 #include "assetc/bake.h"
 
 #include "assetc/bake/directions.h"
-#include "assetc/bake/line_space.h"
+#include "assetc/bake/fill_inside.h"
+#include "assetc/bake/point_blocks.h"
 #include "assets/bounding_sphere.h"
-#include "shaders/shared/field.h"
 
 #include <algorithm>
 #include <array>
 #include <glm/gtc/constants.hpp>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 namespace penumbra {
@@ -17,114 +18,118 @@ namespace penumbra {
 namespace {
 
 constexpr std::size_t kBatch =
-    16; // direction pairs rasterised before looking up: 16 x 2 MiB of lines, 32 bits a point
-constexpr std::size_t kBlock = 256; // points per task
+    16; // direction pairs rasterised before looking up: 16 x 1 MiB of lines
 
-using Coefficients = std::array<float, 16>;
+struct BakeDirections {
+    std::vector<vec3> directions; // antipodal halves
+    std::vector<Sh4> basis;
+    float cellHalfWidth = 0; // of the square with the solid angle of a direction
 
-PointSet shellPoints(const BakeOptions& options, const ShadowField& field)
-{
-    PointSet points;
-    const float last = static_cast<float>(options.side - 1);
-    for (std::uint32_t s = 0; s < options.shells; ++s) {
-        const float r = shellRadius(field, s);
-        for (std::uint32_t y = 0; y < options.side; ++y) {
-            for (std::uint32_t x = 0; x < options.side; ++x) {
-                const vec3 p = r * octahedralDirection(
-                                       vec2(static_cast<float>(x), static_cast<float>(y)) / last);
-                points.x.push_back(p.x);
-                points.y.push_back(p.y);
-                points.z.push_back(p.z);
-            }
-        }
+    explicit BakeDirections(std::uint32_t count) : directions(bakeDirections(count))
+    {
+        for (const vec3& d : directions)
+            basis.push_back(shBasis(d));
+        cellHalfWidth = std::sqrt(glm::pi<float>() / static_cast<float>(count));
     }
-    return points;
-}
+    [[nodiscard]] std::size_t pairs() const { return directions.size() / 2; }
+};
 
-PointSet normalised(const std::vector<vec3>& points, const Sphere& sphere)
-{
-    PointSet out;
-    for (const vec3& point : points) {
-        const vec3 p = (point - sphere.center) / sphere.radius;
-        out.x.push_back(p.x);
-        out.y.push_back(p.y);
-        out.z.push_back(p.z);
-    }
-    return out;
-}
+// Integral of the basis over the blocked directions of each point, built up batch by batch.
+struct Receivers {
+    PointBlocks points;
+    std::vector<vec3> normals;     // where given, directions below a point's tangent plane are free
+    std::vector<Sh4> blocked;      // [points]
+    std::vector<Sh4> blockedByOdd; // [points] where wanted: the part of every other direction
+};
 
-// Adds the basis of every blocked direction of the batch to each point's sum. `normals`, where
-// given, drops directions below a point's tangent plane. The order of additions depends on nothing
-// but the point, so any thread count gives the same bits.
-void accumulate(const std::vector<LineSpace>& lines, const std::vector<vec3>& directions,
-                const std::vector<Sh4>& basis, std::size_t firstPair, std::size_t pairs,
-                const PointSet& points, const std::vector<vec3>* normals,
-                std::vector<Coefficients>& sums)
+// Outside this radius a point asks for the whole cell of a direction, which has less than a quarter
+// of the noise; inside, what is blocked lies at too many distances.
+constexpr float kCellRadius = 1.15f;
+
+// The order of additions depends on nothing but the point, so any thread count gives the same bits.
+void accumulate(const std::vector<LineSpace>& lines, const BakeDirections& bake,
+                std::size_t firstPair, std::size_t pairs, Receivers& receivers)
 {
-    const std::size_t half = directions.size() / 2;
-    tbb::parallel_for(
-        std::size_t{0}, (points.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-            const std::size_t begin = block * kBlock,
-                              count = std::min(kBlock, points.size() - begin);
-            std::array<std::uint8_t, kBlock> blocked;
-            for (std::size_t b = 0; b < pairs; ++b) {
-                if (!lines[b].lookUp(points, begin, count, blocked.data()))
-                    continue;
-                const std::size_t plus = firstPair + b;
-                for (std::size_t i = 0; i < count; ++i) {
-                    int bits = blocked[i];
-                    if (bits == 0)
+    const float cellWeight = 4 * glm::pi<float>() / static_cast<float>(bake.directions.size());
+    tbb::parallel_for(std::size_t{0}, receivers.points.blocks.size(), [&](std::size_t i) {
+        const PointBlock& block = receivers.points.blocks[i];
+        const float cell = block.nearest > kCellRadius ? bake.cellHalfWidth : 0;
+        LineSpace::BlockedParts blocked;
+        for (std::size_t b = 0; b < pairs; ++b) {
+            const std::size_t plus = firstPair + b;
+            std::vector<Sh4>& sums = plus % 2 == 1 && !receivers.blockedByOdd.empty()
+                                         ? receivers.blockedByOdd
+                                         : receivers.blocked;
+            const vec3 w = bake.directions[plus];
+            if (!mayMeetUnitSphere(block, w, cell) ||
+                !lines[b].lookUp(receivers.points.points, block.begin, block.count, cell, blocked))
+                continue;
+            for (int sign = 0; sign < 2; ++sign) {
+                const Sh4& y = bake.basis[plus + (sign == 1 ? bake.pairs() : 0)];
+                for (std::size_t p = 0; p < block.count; ++p) {
+                    const std::size_t point = block.begin + p;
+                    if (blocked[sign][p] <= 0)
                         continue;
-                    if (normals)
-                        bits &= dot((*normals)[begin + i], directions[plus]) > 0 ? 1 : 2;
-                    Coefficients& sum = sums[begin + i];
-                    for (int sign = 0; sign < 2; ++sign) {
-                        if ((bits >> sign & 1) == 0)
-                            continue;
-                        const Sh4& y = basis[plus + (sign == 1 ? half : 0)];
-                        for (std::size_t k = 0; k < 16; ++k)
-                            sum[k] += y.c[k];
-                    }
+                    if (!receivers.normals.empty() &&
+                        (dot(receivers.normals[point], w) > 0) != (sign == 0))
+                        continue;
+                    const float part = blocked[sign][p] * cellWeight;
+                    for (std::size_t k = 0; k < 16; ++k)
+                        sums[point].c[k] += part * y.c[k];
                 }
             }
-        });
+        }
+    });
 }
 
-std::uint8_t quantise(float steps)
+// A vertex lies on the surface that the raster knows only per line: lifted by three quarters of a
+// pixel along its normal, a flat surface never blocks itself (the pixel's line is off by at most
+// half a diagonal).
+Receivers liftedVertices(const PointSet& vertices, const std::vector<vec3>& normals, float pixel)
 {
-    return static_cast<std::uint8_t>(std::clamp(std::lround(steps) + 128L, 1L, 255L));
+    Receivers receivers;
+    receivers.normals = normals;
+    for (std::size_t i = 0; i < normals.size(); ++i)
+        receivers.points.add(vec3(vertices.x[i], vertices.y[i], vertices.z[i]) +
+                             normals[i] * (pixel * 0.75f));
+    receivers.points.endBlock();
+    receivers.blocked.resize(normals.size());
+    return receivers;
 }
 
-std::size_t bandOf(std::size_t coefficient)
+SelfVisibility quantiseSelfVisibility(const Sh4& blocked)
 {
-    return coefficient < 1 ? 0 : coefficient < 4 ? 1 : coefficient < 9 ? 2 : 3;
+    SelfVisibility bytes;
+    for (std::size_t k = 0; k < 16; ++k)
+        bytes[k] = static_cast<std::uint8_t>(
+            std::clamp(std::lround(-blocked.c[k] / kSelfVisibilityScale) + 128L, 1L, 255L));
+    return bytes;
 }
 
-// Scales and bytes from the deviations -sum * 4 pi / n. `blocked` is [shell][y][x].
-void quantiseField(const std::vector<Coefficients>& blocked, const PointSet& points, float weight,
-                   ShadowField& field)
+void readProbes(const Receivers& offGrid, std::vector<Probe>& probes)
 {
-    std::vector<float> invDecay(points.size());
-    std::array<float, 4> largest{};
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const float r2 =
-            points.x[i] * points.x[i] + points.y[i] * points.y[i] + points.z[i] * points.z[i];
-        invDecay[i] = 1 / fieldDecay(r2);
-        for (std::size_t k = 0; k < 16; ++k)
-            largest[bandOf(k)] =
-                std::max(largest[bandOf(k)], std::abs(blocked[i][k] * weight * invDecay[i]));
+    for (std::size_t i = 0; i < 3 * probes.size(); ++i) {
+        Probe& probe = probes[i / 3];
+        const Sh4 &even = offGrid.blocked[i], &odd = offGrid.blockedByOdd[i];
+        Sh4& value = i % 3 == 0 ? probe.exact : i % 3 == 1 ? probe.low : probe.high;
+        for (int k = 0; k < 16; ++k) {
+            value.c[k] = -(even.c[k] + odd.c[k]);
+            if (i % 3 == 0) // half the difference of two fields of half the directions each
+                probe.noise.c[k] = even.c[k] - odd.c[k];
+        }
     }
-    for (std::size_t l = 0; l < 4; ++l)
-        field.bandScale[l] =
-            std::max(largest[l] / 127, 1e-6f); // never 0: a mesh that hides nothing still decodes
-    field.texels.resize(points.size() * 16);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        for (std::size_t k = 0; k < 16; ++k)
-            field.texels[16 * i + k] =
-                quantise(-blocked[i][k] * weight * invDecay[i] / field.bandScale[bandOf(k)]);
 }
 
 } // namespace
+
+std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side)
+{
+    std::vector<std::uint16_t> sides;
+    for (std::size_t s = 0; s < field.shellSides.size(); ++s)
+        sides.push_back(static_cast<std::uint16_t>(
+            shellRadius(field, s) < 0.5f && side >= 17 ? (side + 1) / 2 : side));
+    return sides;
+}
 
 BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
                     const std::vector<std::uint32_t>& indices, const BakeOptions& options,
@@ -136,53 +141,61 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
                     options.shells, options.side);
 
     const Sphere sphere = boundingSphere(positions, 64);
-    const PointSet vertices = normalised(positions, sphere);
+    PointSet vertices;
+    for (const vec3& position : positions) {
+        const vec3 p = (position - sphere.center) / sphere.radius;
+        vertices.x.push_back(p.x);
+        vertices.y.push_back(p.y);
+        vertices.z.push_back(p.z);
+    }
 
     BakeResult result;
-    ShadowField& field = result.field;
+    ShadowField& field = result.field.head;
     field.center = sphere.center;
     field.radius = sphere.radius;
     field.directions = options.directions;
-    field.shellSides.assign(options.shells, static_cast<std::uint16_t>(options.side));
-    const PointSet samples = options.field ? shellPoints(options, field) : PointSet{};
+    field.shellSides.assign(options.shells, 0);
+    field.shellSides = bakedSides(field, options.side);
 
-    // A vertex lies on the surface that the raster knows only per line: lifted by the half diagonal
-    // of a pixel along its normal, a flat surface never blocks itself (the pixel's line is off by
-    // at most that much).
-    const float pixel = 2.0f / static_cast<float>(options.rasterSide);
-    PointSet receivers = vertices;
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        receivers.x[i] += normals[i].x * pixel * 0.75f;
-        receivers.y[i] += normals[i].y * pixel * 0.75f;
-        receivers.z[i] += normals[i].z * pixel * 0.75f;
+    Receivers surface =
+        liftedVertices(vertices, normals, 2.0f / static_cast<float>(options.rasterSide));
+    Receivers samples, offGrid;
+    std::vector<std::uint32_t> node;
+    if (options.field) {
+        samples.points = shellNodes(field, node);
+        samples.blocked.resize(node.size());
+        ProbePoints drawn = drawProbes(field);
+        result.probes = std::move(drawn.probes);
+        offGrid.points = std::move(drawn.points);
+        offGrid.blocked.resize(offGrid.points.points.size());
+        offGrid.blockedByOdd.resize(offGrid.points.points.size());
     }
 
-    const std::vector<vec3> directions = bakeDirections(options.directions);
-    std::vector<Sh4> basis;
-    for (const vec3& d : directions)
-        basis.push_back(shBasis(d));
-
-    std::vector<Coefficients> sampleSums(samples.size()), receiverSums(receivers.size());
+    const BakeDirections directions(options.directions);
+    tbb::enumerable_thread_specific<RasterScratch> scratch;
     std::vector<LineSpace> lines(kBatch, LineSpace(options.rasterSide));
-    const std::size_t pairs = directions.size() / 2;
-    progress.begin("bake", pairs);
-    for (std::size_t first = 0; first < pairs; first += kBatch) {
-        const std::size_t count = std::min(kBatch, pairs - first);
+    progress.begin("bake", directions.pairs());
+    for (std::size_t first = 0; first < directions.pairs(); first += kBatch) {
+        const std::size_t count = std::min(kBatch, directions.pairs() - first);
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
-            lines[b].rasterise(directions[first + b], vertices, indices);
+            lines[b].rasterise(directions.directions[first + b], vertices, indices,
+                               scratch.local());
         });
-        accumulate(lines, directions, basis, first, count, samples, nullptr, sampleSums);
-        accumulate(lines, directions, basis, first, count, receivers, &normals, receiverSums);
+        accumulate(lines, directions, first, count, samples);
+        accumulate(lines, directions, first, count, offGrid);
+        accumulate(lines, directions, first, count, surface);
         progress.step(count);
     }
 
-    const float weight = 4 * glm::pi<float>() / static_cast<float>(options.directions);
-    quantiseField(sampleSums, samples, weight, field);
-    result.selfVisibility.resize(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i)
+    for (const Sh4& blocked : surface.blocked)
+        result.selfVisibility.push_back(quantiseSelfVisibility(blocked));
+    result.field.nodes.resize(node.size());
+    for (std::size_t i = 0; i < node.size(); ++i)
         for (std::size_t k = 0; k < 16; ++k)
-            result.selfVisibility[i][k] =
-                quantise(-receiverSums[i][k] * weight / kSelfVisibilityScale);
+            result.field.nodes[node[i]].c[k] = -samples.blocked[i].c[k];
+    if (options.field)
+        fillInside(result.field);
+    readProbes(offGrid, result.probes);
     return result;
 }
 

@@ -23,6 +23,14 @@ namespace {
 constexpr int kLanes = 8;
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 constexpr float kNothing = std::numeric_limits<float>::max();
+constexpr float kDepthStep = 2.0f / 65535; // of a stored depth; a pixel of 512 is 128 times that
+constexpr float kBeyond = 1e9f;            // taken off the depth of a line that hits nothing
+
+// The raster has an empty pixel all around, which lines beside it are moved to.
+constexpr int pitchOf(int side)
+{
+    return side + 2;
+}
 
 struct Triangle {
     float x[3], y[3], z[3]; // pixels, pixels, depth
@@ -73,8 +81,7 @@ inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int s
                                  (row[2] + step * dx[2] >= 0.0f) &
                                  (step <= static_cast<float>(x1 - x0));
             const Lanes depth = depthRow + step * depthDx;
-            const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(side) +
-                                      static_cast<std::size_t>(x);
+            const auto pixel = static_cast<std::size_t>((y + 1) * pitchOf(side) + x + 1);
             Lanes nearest, farthest;
             std::memcpy(&nearest, near + pixel, sizeof(Lanes));
             std::memcpy(&farthest, far + pixel, sizeof(Lanes));
@@ -105,28 +112,107 @@ PENUMBRA_CLONES void drawTriangles(const float* projected, const std::uint32_t* 
 struct LookUp {
     vec3 u, v, w;
     float side;
-    const float *near, *far;
+    const std::uint32_t* lines;
     const float *x, *y, *z; // points
 };
 
-PENUMBRA_CLONES bool lookUpPoints(const LookUp& l, std::size_t count, std::uint8_t* blocked)
+// Where a line meets the raster, in pixels from its lower corner, and a point's depth on it.
+struct Lines {
+    float column[LineSpace::kMaxLookUp], row[LineSpace::kMaxLookUp], depth[LineSpace::kMaxLookUp];
+};
+
+// Everything below compiles to vector code without branches.
+inline __attribute__((always_inline)) int pixelOf(float column, float row, float side)
+{
+    // From 0, the empty pixel before the first one, to side + 1, that after the last.
+    const float x = std::min(std::max(column + 1.0f, 0.0f), side + 1.0f);
+    const float y = std::min(std::max(row + 1.0f, 0.0f), side + 1.0f);
+    return static_cast<int>(y) * pitchOf(static_cast<int>(side)) + static_cast<int>(x);
+}
+
+inline __attribute__((always_inline)) void project(const LookUp& l, std::size_t count, Lines& lines)
 {
     const float half = 0.5f * l.side;
-    const float nowhere =
-        l.side * l.side; // the pixel that hits nothing; exact in a float for sides up to 4096
-    int any = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const float x = l.x[i], y = l.y[i], z = l.z[i];
-        const float column = std::floor((x * l.u.x + y * l.u.y + z * l.u.z) * half + half);
-        const float line = std::floor((x * l.v.x + y * l.v.y + z * l.v.z) * half + half);
-        const float depth = x * l.w.x + y * l.w.y + z * l.w.z;
-        const bool inside = (column >= 0) & (column < l.side) & (line >= 0) & (line < l.side);
-        const int pixel = static_cast<int>(inside ? line * l.side + column : nowhere);
-        const int bits = (l.far[pixel] > depth ? 1 : 0) | (l.near[pixel] < depth ? 2 : 0);
-        blocked[i] = static_cast<std::uint8_t>(bits);
-        any |= bits;
+        lines.column[i] = (x * l.u.x + y * l.u.y + z * l.u.z) * half + half;
+        lines.row[i] = (x * l.v.x + y * l.v.y + z * l.v.z) * half + half;
+        lines.depth[i] = x * l.w.x + y * l.w.y + z * l.w.z;
     }
-    return any != 0;
+}
+
+PENUMBRA_CLONES int lookUpLines(const LookUp& l, std::size_t count, float* plus, float* minus)
+{
+    Lines lines;
+    project(l, count, lines);
+    const std::uint32_t* raster = l.lines;
+    const float side = l.side;
+    int any = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t line = raster[pixelOf(lines.column[i], lines.row[i], side)];
+        const auto far = static_cast<float>(static_cast<int>(line >> 16));
+        const auto near = static_cast<float>(static_cast<int>(line & 0xffff));
+        const float nothing = line == 0 ? kBeyond : 1.0f;
+        plus[i] = far * kDepthStep - nothing > lines.depth[i] ? 1.0f : 0.0f;
+        minus[i] = near * kDepthStep - nothing > -lines.depth[i] ? 1.0f : 0.0f;
+        any |= (plus[i] + minus[i] > 0 ? 1 : 0);
+    }
+    return any;
+}
+
+PENUMBRA_CLONES int lookUpBoxes(const LookUp& l, const std::uint32_t* sums, std::size_t count,
+                                float cellHalfWidth, float* plus, float* minus)
+{
+    Lines lines;
+    project(l, count, lines);
+    const float side = l.side;
+    const int pitch = pitchOf(static_cast<int>(side));
+    int any = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        // At least a pixel.
+        const float half = std::max(cellHalfWidth * std::abs(lines.depth[i]) * 0.5f * side, 0.5f);
+        // Sums end before pixel x, y; from 1, which holds nothing, to side + 1, which holds all.
+        const auto edge = [&](float at) {
+            return static_cast<int>(std::min(std::max(at + 1.5f, 1.0f), side + 1.0f));
+        };
+        const int x0 = edge(lines.column[i] - half), x1 = edge(lines.column[i] + half);
+        const int y0 = edge(lines.row[i] - half) * pitch, y1 = edge(lines.row[i] + half) * pitch;
+        const auto hits = static_cast<float>(
+            static_cast<int>(sums[y1 + x1] - sums[y1 + x0] - sums[y0 + x1] + sums[y0 + x0]));
+        const float part = hits / (4 * half * half);
+        plus[i] = lines.depth[i] < 0 ? part : 0.0f;
+        minus[i] = lines.depth[i] < 0 ? 0.0f : part;
+        any |= part > 0 ? 1 : 0;
+    }
+    return any;
+}
+
+// sums[y][x]: lines that hit something in rows below y and columns below x.
+void sumHits(const std::uint32_t* lines, int side, std::uint32_t* sums)
+{
+    const auto pitch = static_cast<std::size_t>(pitchOf(side));
+    std::fill(sums, sums + pitch, 0u);
+    for (std::size_t y = 1; y < pitch; ++y) {
+        std::uint32_t row = 0;
+        sums[y * pitch] = 0;
+        for (std::size_t x = 1; x < pitch; ++x) {
+            row += lines[(y - 1) * pitch + x - 1] != 0 ? 1 : 0;
+            sums[y * pitch + x] = sums[(y - 1) * pitch + x] + row;
+        }
+    }
+}
+
+// Depths in 1 to 65535, -1 to 1; the nearest with its sign turned, so that 0 means none for both.
+PENUMBRA_CLONES void packDepths(const float* near, const float* far, std::size_t count,
+                                std::uint32_t* lines)
+{
+    for (std::size_t i = 0; i < count; ++i) {
+        const float f = std::min(std::max((far[i] + 1.0f) / kDepthStep + 0.5f, 1.0f), 65535.0f);
+        const float n = std::min(std::max((1.0f - near[i]) / kDepthStep + 0.5f, 1.0f), 65535.0f);
+        const auto packed = static_cast<std::uint32_t>(static_cast<int>(f)) << 16 |
+                            static_cast<std::uint32_t>(static_cast<int>(n));
+        lines[i] = far[i] < near[i] ? 0u : packed;
+    }
 }
 
 } // namespace
@@ -137,13 +223,14 @@ LineSpace::LineSpace(std::uint32_t side) : m_side(side)
                     "raster side {} must be a multiple of 8, at most 4096", side);
     // The last row's vector may reach over its end, into the line that hits nothing but never
     // covering it.
-    const std::size_t pixels = static_cast<std::size_t>(side) * side + kLanes;
-    m_near.resize(pixels);
-    m_far.resize(pixels);
+    const auto pitch = static_cast<std::size_t>(pitchOf(static_cast<int>(side)));
+    const std::size_t pixels = pitch * pitch + kLanes;
+    m_lines.resize(pixels);
+    m_sums.resize(pixels);
 }
 
 void LineSpace::rasterise(vec3 w, const PointSet& vertices,
-                          const std::vector<std::uint32_t>& indices)
+                          const std::vector<std::uint32_t>& indices, RasterScratch& scratch)
 {
     // Any frame will do; start from the axis that is least parallel to w.
     const vec3 a = glm::abs(w);
@@ -154,33 +241,39 @@ void LineSpace::rasterise(vec3 w, const PointSet& vertices,
     m_u = normalize(cross(axis, w));
     m_v = cross(w, m_u);
 
-    std::fill(m_near.begin(), m_near.end(), kNothing);
-    std::fill(m_far.begin(), m_far.end(), -kNothing);
+    scratch.near.assign(m_lines.size(), kNothing);
+    scratch.far.assign(m_lines.size(), -kNothing);
     const float half = 0.5f * static_cast<float>(m_side);
-    m_projected.resize(3 * vertices.size());
+    scratch.projected.resize(3 * vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const vec3 p(vertices.x[i], vertices.y[i], vertices.z[i]);
-        m_projected[3 * i] = dot(p, m_u) * half + half - 0.5f; // pixel centres at whole numbers
-        m_projected[3 * i + 1] = dot(p, m_v) * half + half - 0.5f;
-        m_projected[3 * i + 2] = dot(p, m_w);
+        scratch.projected[3 * i] =
+            dot(p, m_u) * half + half - 0.5f; // pixel centres at whole numbers
+        scratch.projected[3 * i + 1] = dot(p, m_v) * half + half - 0.5f;
+        scratch.projected[3 * i + 2] = dot(p, m_w);
     }
-    drawTriangles(m_projected.data(), indices.data(), indices.size(), static_cast<int>(m_side),
-                  m_near.data(), m_far.data());
+    drawTriangles(scratch.projected.data(), indices.data(), indices.size(),
+                  static_cast<int>(m_side), scratch.near.data(), scratch.far.data());
+    packDepths(scratch.near.data(), scratch.far.data(), m_lines.size(), m_lines.data());
+    sumHits(m_lines.data(), static_cast<int>(m_side), m_sums.data());
 }
 
 bool LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count,
-                       std::uint8_t* blocked) const
+                       float cellHalfWidth, BlockedParts& blocked) const
 {
+    PENUMBRA_ASSERT(count <= kMaxLookUp, "{} points at once", count);
     const LookUp l{m_u,
                    m_v,
                    m_w,
                    static_cast<float>(m_side),
-                   m_near.data(),
-                   m_far.data(),
+                   m_lines.data(),
                    points.x.data() + begin,
                    points.y.data() + begin,
                    points.z.data() + begin};
-    return lookUpPoints(l, count, blocked);
+    const int any = cellHalfWidth == 0 ? lookUpLines(l, count, blocked[0], blocked[1])
+                                       : lookUpBoxes(l, m_sums.data(), count, cellHalfWidth,
+                                                     blocked[0], blocked[1]);
+    return any != 0;
 }
 
 } // namespace penumbra

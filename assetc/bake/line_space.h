@@ -20,25 +20,40 @@ struct PointSet {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
+// Working memory of rasterise, to be kept by a thread.
+struct RasterScratch {
+    std::vector<float> near, far;
+    std::vector<float> projected; // [3 * vertexCount]: pixel x, pixel y, depth
+};
+
 class LineSpace {
 public:
     // `side`: lines across the bounding sphere.
     explicit LineSpace(std::uint32_t side);
 
     // Rasterises the triangles (vertices inside the unit sphere) along unit direction w.
-    void rasterise(vec3 w, const PointSet& vertices, const std::vector<std::uint32_t>& indices);
+    void rasterise(vec3 w, const PointSet& vertices, const std::vector<std::uint32_t>& indices,
+                   RasterScratch& scratch);
 
-    // blocked[i] bit 0: the ray from point begin + i along +w is blocked, bit 1: along -w. Returns
-    // whether any is.
-    bool lookUp(const PointSet& points, std::size_t begin, std::size_t count,
-                std::uint8_t* blocked) const;
+    // blocked[0][i]: the part, 0 to 1, of the rays around +w from point begin + i that is blocked,
+    // blocked[1][i] that around -w. Returns whether any is. At most kMaxLookUp points.
+    //
+    // cellHalfWidth 0: the ray along w alone. Otherwise all rays of the direction's cell, a square
+    // of that half width (radians), for points well outside the bounding sphere: the ray along
+    // w + d has left the line along w by t d at distance t, and meets the object near distance
+    // |p.w|, so the part is that of a square of lines of half width |p.w| cellHalfWidth which hit
+    // anything.
+    static constexpr std::size_t kMaxLookUp = 256;
+    using BlockedParts = float[2][kMaxLookUp];
+    bool lookUp(const PointSet& points, std::size_t begin, std::size_t count, float cellHalfWidth,
+                BlockedParts& blocked) const;
 
 private:
     std::uint32_t m_side; // pixels, a multiple of 8
     vec3 m_u{0}, m_v{0}, m_w{0};
-    std::vector<float> m_near,
-        m_far; // [side * side + padding]; the pixel after the last row is a line that hits nothing
-    std::vector<float> m_projected; // scratch [3 * vertexCount]: pixel x, pixel y, depth
+    std::vector<std::uint32_t> m_lines; // [(side + 2)^2 + padding] an empty pixel all around; far
+                                        // depth in the high half, near in the low, 0: hits nothing
+    std::vector<std::uint32_t> m_sums;  // [(side + 2)^2 + padding] lines before each that hit
 };
 
 } // namespace penumbra

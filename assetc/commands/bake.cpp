@@ -53,6 +53,13 @@ int runBake(const BakeArguments& arguments)
                    "bounding radii)\n",
                    verify->samples, verify->directions, verify->rms, verify->max,
                    verify->worstRadius);
+    if (const auto& target = asset->report.target)
+        for (const TargetTrial& trial : target->trials)
+            fmt::print(
+                "target: {} shells of {}², {} directions, threshold {:.4f}: error {:.4f}, {} "
+                "bytes, {:.1f} s\n",
+                trial.options.shells, trial.options.side, trial.options.directions, trial.threshold,
+                trial.error, trial.bytes, trial.seconds);
     double seconds = 0;
     for (const StageTime& time : asset->report.times)
         seconds += time.seconds;

@@ -9,56 +9,54 @@ namespace penumbra {
 
 namespace {
 
-// Every byte 128, which is "nothing in the way"; K = 0.01 in all bands.
-ShadowField openField(std::uint32_t shells, std::uint16_t side)
+FieldSamples openField(std::uint32_t shells, std::uint16_t side)
 {
-    ShadowField field;
-    field.bandScale = {0.01f, 0.01f, 0.01f, 0.01f};
-    field.shellSides.assign(shells, side);
-    field.directions = 64;
-    field.texels.assign(fieldTexelBytes(field), 128);
+    FieldSamples field;
+    field.head.shellSides.assign(shells, side);
+    field.head.directions = 64;
+    field.nodes.resize(fieldTexelBytes(field.head) / kFieldCoefficients);
     return field;
 }
 
-std::uint8_t& byteOf(ShadowField& field, std::size_t shell, std::size_t y, std::size_t x)
+float& c0(FieldSamples& field, std::size_t shell, std::size_t y, std::size_t x)
 {
-    const std::size_t side = field.shellSides[0];
-    return field.texels[((shell * side + y) * side + x) * kFieldCoefficients];
+    return field.nodes[firstNode(field.head, shell) + y * field.head.shellSides[shell] + x].c[0];
 }
 
-float decayOf(const ShadowField& field, std::size_t shell)
+float decayOf(const FieldSamples& field, std::size_t shell)
 {
-    const float r =
-        field.innerRadius *
-        std::pow(field.outerRadius / field.innerRadius,
-                 static_cast<float>(shell) / static_cast<float>(field.shellSides.size() - 1));
+    const float r = shellRadius(field.head, shell);
     return fieldDecay(r * r);
 }
 
+using Sides = std::vector<std::uint16_t>;
+
 } // namespace
 
-TEST(AdaptShells, ConstantShellsShrinkToTheSmallestGrid)
+TEST(AdaptShells, OpenFieldNeedsTwoOfTheSmallestGrids)
 {
-    ShadowField field = openField(4, 65);
+    FieldSamples field = openField(4, 65);
     const AdaptReport report = adaptShells(field, 0.01f);
-    EXPECT_EQ(field.shellSides, std::vector<std::uint16_t>(4, kMinAdaptedSide));
+    EXPECT_EQ(field.head.shellSides, (Sides{9, 0, 0, 9}));
     EXPECT_EQ(report.worst, 0);
-    EXPECT_EQ(report.bytesBefore, 4u * 65 * 65 * 16);
-    EXPECT_EQ(report.bytesAfter, 4u * 9 * 9 * 16);
-    EXPECT_TRUE(validateField(field));
+    EXPECT_EQ(report.shellsDropped, 2u);
+    EXPECT_EQ(report.bytesFixed, 4u * 65 * 65 * 16);
+    EXPECT_EQ(report.bytes, 2u * 9 * 9 * 16);
+    EXPECT_TRUE(validateField(quantiseField(field)));
 }
 
-// One node between those of the coarser grid differs in c_0 alone: Eq. (1) is |dc_0| Y_00.
+// One node between those of the coarser grid differs in c_0 alone: Eq. (1) is |dc_0| Y_00. The mean
+// around the neighbouring nodes takes a sixteenth of it along.
 TEST(AdaptShells, ThresholdIsEquationOne)
 {
     for (const float factor : {0.99f, 1.01f}) {
-        ShadowField field = openField(3, 17);
-        byteOf(field, 1, 5, 5) = 228;
-        const float error = 100 * 0.01f * decayOf(field, 1) * 0.282094792f;
+        FieldSamples field = openField(3, 17);
+        c0(field, 1, 5, 5) = 0.3f;
+        const float error = 0.3f * 0.282094792f * (1 - 1.0f / 16);
         const AdaptReport report = adaptShells(field, factor * error);
-        EXPECT_EQ(field.shellSides[0], 9);
-        EXPECT_EQ(field.shellSides[1], factor < 1 ? 17 : 9);
-        EXPECT_EQ(field.shellSides[2], 9);
+        EXPECT_EQ(field.head.shellSides[0], 9);
+        EXPECT_EQ(field.head.shellSides[1], factor < 1 ? 17 : 9);
+        EXPECT_EQ(field.head.shellSides[2], 9);
         EXPECT_NEAR(report.worst, factor < 1 ? 0 : error, 1e-5f * error);
     }
 }
@@ -67,26 +65,84 @@ TEST(AdaptShells, ThresholdIsEquationOne)
 // neighbourhood.
 TEST(AdaptShells, PeakOnAKeptNodeStillNeedsTheFineGrid)
 {
-    ShadowField field = openField(2, 33);
-    byteOf(field, 0, 8, 8) = 255;
+    FieldSamples field = openField(2, 33);
+    c0(field, 0, 8, 8) = 1;
     adaptShells(field, 1e-3f);
-    EXPECT_EQ(field.shellSides[0], 33);
-    EXPECT_EQ(byteOf(field, 0, 8, 8), 255);
-    EXPECT_EQ(field.shellSides[1], 9);
+    EXPECT_EQ(field.head.shellSides, (Sides{33, 9}));
+    EXPECT_EQ(c0(field, 0, 8, 8), 1);
+}
+
+TEST(AdaptShells, NodesInsideTheObjectDoNotCount)
+{
+    FieldSamples field = openField(2, 33);
+    c0(field, 0, 8, 8) = 1;
+    field.inside.assign(field.nodes.size(), false);
+    field.inside[8 * 33 + 8] = true;
+    adaptShells(field, 1e-3f);
+    // The peak spreads to nodes that do count where the coarser grid keeps it.
+    EXPECT_GT(field.head.shellSides[0], 9);
+    field = openField(2, 33);
+    c0(field, 0, 9, 9) = 0.01f;
+    field.inside.assign(field.nodes.size(), false);
+    field.inside[9 * 33 + 9] = true;
+    adaptShells(field, 1e-3f);
+    EXPECT_EQ(field.head.shellSides, (Sides{9, 9}));
+}
+
+// Between shells readers interpolate c / g(r), so a shell that lies on that line is not needed.
+TEST(AdaptShells, DropsShellsThatTheirNeighboursGive)
+{
+    FieldSamples field = openField(5, 9);
+    const auto set = [&](std::size_t shell, float steps) {
+        for (std::size_t i = 0; i < 81; ++i)
+            field.nodes[81 * shell + i].c[0] = steps * decayOf(field, shell);
+    };
+    for (std::size_t s = 0; s < 5; ++s)
+        set(s, -0.2f - 0.1f * static_cast<float>(s));
+    FieldSamples bent = field;
+    const AdaptReport report = adaptShells(field, 1e-4f);
+    EXPECT_EQ(field.head.shellSides, (Sides{9, 0, 0, 0, 9}));
+    EXPECT_LT(report.worst, 1e-6f);
+
+    for (std::size_t i = 0; i < 81; ++i)
+        bent.nodes[81 * 2 + i].c[0] -= 0.1f;
+    adaptShells(bent, 1e-4f);
+    EXPECT_EQ(bent.head.shellSides, Sides(5, 9));
 }
 
 TEST(AdaptShells, ChannelsKeepOneSide)
 {
-    ShadowField field = openField(2, 17);
-    field.kind = FieldKind::Radiance;
-    field.channels = 3;
-    field.texels.assign(fieldTexelBytes(field), 128);
-    field.texels[(2 * 17 * 17 + 5 * 17 + 5) * 16] = 255; // channel 1, shell 0
+    FieldSamples field = openField(2, 17);
+    field.head.kind = FieldKind::Radiance;
+    field.head.channels = 3;
+    field.nodes.resize(fieldTexelBytes(field.head) / kFieldCoefficients);
+    field.nodes[2 * 17 * 17 + 5 * 17 + 5].c[0] = 1; // channel 1, shell 0
     adaptShells(field, 0.01f);
-    EXPECT_EQ(field.shellSides, (std::vector<std::uint16_t>{17, 9}));
-    EXPECT_EQ(field.texels.size(), 3u * 16 * (17 * 17 + 9 * 9));
-    EXPECT_EQ(field.texels[((17 * 17 + 9 * 9) + 5 * 17 + 5) * 16], 255);
-    EXPECT_TRUE(validateField(field));
+    EXPECT_EQ(field.head.shellSides, (Sides{17, 9}));
+    EXPECT_EQ(field.nodes.size(), 3u * (17 * 17 + 9 * 9));
+    EXPECT_EQ(field.nodes[(17 * 17 + 9 * 9) + 5 * 17 + 5].c[0], 1);
+    EXPECT_TRUE(validateField(quantiseField(field)));
+}
+
+// What readers make of bytes is what assetc measures of samples, to half a step.
+TEST(RefineField, LeftOutShellsAreLinearInTheSteps)
+{
+    ShadowField field;
+    field.shellSides = {3, 0, 0, 5};
+    field.bandScale = {0.01f, 0.01f, 0.01f, 0.01f};
+    field.texels.assign(16 * (9 + 25), 100);
+    std::fill(field.texels.begin() + 16 * 9, field.texels.end(), 160);
+    ASSERT_TRUE(validateField(field));
+    const std::vector<std::uint8_t> fine = refineField(field, 0);
+    ASSERT_EQ(fine.size(), 4u * 25 * 16);
+    for (std::size_t s = 0; s < 4; ++s)
+        for (std::size_t i = 0; i < 25 * 16; ++i)
+            EXPECT_EQ(fine[s * 25 * 16 + i], 100 + 20 * s);
+    for (const Sides& sides : {Sides{0, 3, 3}, Sides{3, 3, 0}}) {
+        field.shellSides = sides;
+        field.texels.assign(fieldTexelBytes(field), 128);
+        EXPECT_FALSE(validateField(field));
+    }
 }
 
 TEST(RefineGrid, KeepsNodesAndInterpolatesBetween)

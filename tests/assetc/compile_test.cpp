@@ -78,26 +78,72 @@ TEST(CompileAsset, VerifyAgreesWithRays)
     const TemporaryFolder folder;
     CompileOptions options = quickOptions();
     options.bake.shells = 12;
+    options.bake.directions = 1024; // of fewer, the noise of the rays is larger far away
     options.verify = true;
     const auto asset = compile(writeSphere(folder), options);
     ASSERT_TRUE(asset) << asset.error().message;
     ASSERT_TRUE(asset->report.verify);
-    EXPECT_EQ(asset->report.verify->directions, 256u);
+    EXPECT_EQ(asset->report.verify->directions, 1024u);
     EXPECT_GT(asset->report.verify->rms, 0);
     EXPECT_LT(asset->report.verify->rms, 0.01f);
 }
 
 TEST(CompileAsset, VerifyNoticesASpoiledField)
 {
+    const MeshAsset mesh = sampleMesh(12);
+    Progress progress("test");
+    FieldSamples field =
+        bakeMesh(mesh.positions, mesh.normals, mesh.indices, quickOptions().bake, progress).field;
+    const float good = verifyBake(mesh, field).rms;
+    for (Sh4& node : field.nodes)
+        node.c[0] *= 0.5f;
+    EXPECT_GT(verifyBake(mesh, field).rms, 5 * good);
+}
+
+// A finer bake errs less, and each cause where its parameter is finer.
+TEST(CompileAsset, ErrorsAreInTheAssetAndFallWithTheBake)
+{
     const TemporaryFolder folder;
-    auto asset = compile(writeSphere(folder), quickOptions());
-    ASSERT_TRUE(asset);
-    const float good = verifyBake(asset->mesh)->rms;
-    for (std::size_t i = 0; i < asset->mesh.field->texels.size(); i += 16)
-        asset->mesh.field->texels[i] = static_cast<std::uint8_t>(asset->mesh.field->texels[i] / 2);
-    EXPECT_GT(verifyBake(asset->mesh)->rms, 5 * good);
-    asset->mesh.field.reset();
-    EXPECT_FALSE(verifyBake(asset->mesh));
+    const auto path = writeSphere(folder);
+    CompileOptions options = quickOptions();
+    options.adaptThreshold = 0;
+    const auto coarse = compile(path, options);
+    options.bake.side = 33;
+    const auto finerSide = compile(path, options);
+    options.bake.shells = 21;
+    const auto finerShells = compile(path, options);
+    options.bake.directions = 2048;
+    const auto fine = compile(path, options);
+    ASSERT_TRUE(coarse && finerSide && finerShells && fine);
+    const FieldErrors a = *coarse->mesh.field->errors, b = *finerSide->mesh.field->errors,
+                      c = *finerShells->mesh.field->errors, d = *fine->mesh.field->errors;
+    for (const FieldErrors& errors : {a, b, c, d})
+        EXPECT_GE(errors.points, 4096u);
+    EXPECT_LT(b.angular.rms, 0.7f * a.angular.rms);
+    EXPECT_LT(c.radial.rms, 0.5f * b.radial.rms);
+    EXPECT_LT(d.directions.rms, 0.6f * c.directions.rms);
+    EXPECT_LT(d.total.rms, 0.5f * a.total.rms);
+    const auto decoded = decodeMeshAsset(fine->bytes);
+    ASSERT_TRUE(decoded && decoded->field->errors);
+    EXPECT_EQ(decoded->field->errors->points, d.points);
+    EXPECT_FLOAT_EQ(decoded->field->errors->bandLimit.max, d.bandLimit.max);
+}
+
+TEST(CompileAsset, TargetErrorIsReachedAndSaysWhatItCost)
+{
+    const TemporaryFolder folder;
+    CompileOptions options = quickOptions();
+    options.targetError = 0.03f;
+    const auto asset = compile(writeSphere(folder), options);
+    ASSERT_TRUE(asset) << asset.error().message;
+    const TargetReport& target = *asset->report.target;
+    EXPECT_TRUE(target.reached);
+    EXPECT_LE(target.trials.back().error, 0.03f);
+    EXPECT_EQ(target.trials.back().bytes, asset->mesh.field->texels.size());
+    EXPECT_EQ(target.trials.back().options.directions, asset->mesh.field->directions);
+    const FieldErrors& errors = *asset->mesh.field->errors;
+    EXPECT_NEAR(std::hypot(errors.total.rms, errors.directions.rms), target.trials.back().error,
+                1e-6f);
 }
 
 TEST(CompileAsset, NoField)

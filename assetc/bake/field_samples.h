@@ -1,0 +1,34 @@
+// A field as it is baked: floats, before it is stored as bytes.
+#pragma once
+
+#include "assets/shadow_field.h"
+#include "shaders/shared/sh.h"
+
+#include <vector>
+
+namespace penumbra {
+
+// `nodes` lie as the texels of the field will: [frame][channel][shell][y][x]. Each holds the
+// deviation from "nothing in the way" (occlusion: at most 0 in c_0) or the radiance itself.
+struct FieldSamples {
+    ShadowField head; // all but bandScale and texels
+    std::vector<Sh4> nodes;
+    // [nodes] points that see nothing because they lie in the object: no receiver is there, and
+    // they hold what the space around continues to. Empty: none.
+    std::vector<bool> inside;
+};
+
+// Index of a grid's first node; grids are counted as in fieldGrid (assets/shadow_field.h).
+std::size_t firstNode(const ShadowField& field, std::size_t grid);
+
+// A grid [y][x] on another side, bilinear between its nodes; both sides 2^k + 1.
+std::vector<Sh4> refineNodes(const std::vector<Sh4>& grid, std::uint32_t side, std::uint32_t to);
+
+// One frame and channel on one side, left out shells included: [shell][y][x], coefficients over
+// g(r), in which readers interpolate.
+std::vector<Sh4> refineNodes(const FieldSamples& samples, std::size_t grid, std::uint32_t side);
+
+// Band scales from the largest node of each band, and bytes: to the nearest step.
+ShadowField quantiseField(const FieldSamples& samples);
+
+} // namespace penumbra

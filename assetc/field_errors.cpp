@@ -1,0 +1,155 @@
+#include "assetc/field_errors.h"
+
+#include "shaders/shared/field.h"
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+namespace penumbra {
+
+namespace {
+
+constexpr float kInside = -0.9995f * kSqrt4Pi; // c_0 of a point that sees nothing
+
+// A field as the GPU holds it: one side on all shells, [y][x][shell], coefficients over g(r).
+class UniformField {
+public:
+    UniformField(const ShadowField& head, std::uint32_t side)
+        : m_grid{0, side, 0, 0, 0, static_cast<std::uint32_t>(head.shellSides.size())},
+          m_nodes(std::size_t{side} * side * m_grid.shells)
+    {
+        const float last = static_cast<float>(m_grid.shells - 1);
+        m_grid.lastShell = last;
+        m_grid.shellScale = last / std::log2(head.outerRadius / head.innerRadius);
+        m_grid.shellBias = -m_grid.shellScale * std::log2(head.innerRadius);
+    }
+
+    Sh4& at(std::size_t shell, std::size_t node) { return m_nodes[node * m_grid.shells + shell]; }
+
+    // Trilinear; `p` in bounding radii. `fade`: to 0 over the last interval, as readers do.
+    [[nodiscard]] Sh4 sample(vec3 p, bool fade) const
+    {
+        const FieldCell cell = fieldCell(p, m_grid);
+        const float decay = fade ? cell.decay : fieldDecay(dot(p, p));
+        Sh4 sum{};
+        for (uint corner = 0; corner < 8; ++corner) {
+            const Sh4& node = m_nodes[cell.sample0 + fieldCornerOffset(corner, m_grid)];
+            const float weight = fieldCornerWeight(corner, cell.fraction) * decay;
+            for (int k = 0; k < 16; ++k)
+                sum.c[k] += weight * node.c[k];
+        }
+        return sum;
+    }
+
+private:
+    FieldGrid m_grid;
+    std::vector<Sh4> m_nodes;
+};
+
+UniformField readBytes(const ShadowField& field)
+{
+    const std::uint32_t side = largestSide(field);
+    UniformField out(field, side);
+    const std::vector<std::uint8_t> texels = refineField(field, 0);
+    const std::size_t nodes = std::size_t{side} * side;
+    const vec4 scale(field.bandScale[0], field.bandScale[1], field.bandScale[2],
+                     field.bandScale[3]);
+    for (std::size_t s = 0; s < field.shellSides.size(); ++s)
+        for (std::size_t n = 0; n < nodes; ++n) {
+            Sh4 steps;
+            for (std::size_t k = 0; k < 16; ++k)
+                steps.c[k] = static_cast<float>(texels[(s * nodes + n) * 16 + k]) - 128.0f;
+            out.at(s, n) = fieldDeviation(steps, scale);
+        }
+    return out;
+}
+
+UniformField readSamples(const FieldSamples& samples)
+{
+    const std::uint32_t side = largestSide(samples.head);
+    UniformField out(samples.head, side);
+    const std::vector<Sh4> nodes = refineNodes(samples, 0, side);
+    const std::size_t perShell = std::size_t{side} * side;
+    for (std::size_t s = 0; s < samples.head.shellSides.size(); ++s)
+        for (std::size_t n = 0; n < perShell; ++n)
+            out.at(s, n) = nodes[s * perShell + n];
+    return out;
+}
+
+float squared(const Sh4& a)
+{
+    float sum = 0;
+    for (const float c : a.c)
+        sum += c * c;
+    return sum;
+}
+
+Sh4 difference(const Sh4& a, const Sh4& b)
+{
+    Sh4 d;
+    for (int k = 0; k < 16; ++k)
+        d.c[k] = a.c[k] - b.c[k];
+    return d;
+}
+
+// Root mean square and maximum of what is added, as squares over the whole sphere.
+class Collector {
+public:
+    void add(float square)
+    {
+        const double mean = std::max(0.0, static_cast<double>(square)) / (4 * glm::pi<double>());
+        m_sum += mean;
+        m_largest = std::max(m_largest, mean);
+        ++m_count;
+    }
+    [[nodiscard]] FieldError result() const
+    {
+        return {static_cast<float>(std::sqrt(m_sum / static_cast<double>(std::max(m_count, 1u)))),
+                static_cast<float>(std::sqrt(m_largest))};
+    }
+
+private:
+    double m_sum = 0, m_largest = 0;
+    std::uint32_t m_count = 0;
+};
+
+} // namespace
+
+FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
+                          const std::vector<Probe>& probes)
+{
+    const UniformField exactBytes = readBytes(field), floats = readSamples(samples);
+    Collector total, angular, radial, quantisation, directions, bandLimit;
+    FieldErrors errors;
+    for (const Probe& probe : probes) {
+        if (std::min({probe.exact.c[0], probe.low.c[0], probe.high.c[0]}) < kInside)
+            continue;
+        ++errors.points;
+        const float lowShell = std::floor(probe.shell), t = probe.shell - lowShell;
+        const float low = shellRadius(field, static_cast<std::size_t>(lowShell));
+        const float high = shellRadius(field, static_cast<std::size_t>(lowShell) + 1);
+        const float r = low * std::pow(high / low, t);
+        const vec3 place = probe.direction * r;
+        total.add(squared(difference(exactBytes.sample(place, true), probe.exact)));
+        quantisation.add(
+            squared(difference(exactBytes.sample(place, false), floats.sample(place, false))));
+        angular.add(squared(difference(floats.sample(probe.direction * low, false), probe.low)));
+        Sh4 between; // linear in the coefficients over g(r), as readers interpolate
+        for (int k = 0; k < 16; ++k)
+            between.c[k] = ((1 - t) * probe.low.c[k] / fieldDecay(low * low) +
+                            t * probe.high.c[k] / fieldDecay(high * high)) *
+                           fieldDecay(r * r);
+        radial.add(squared(difference(between, probe.exact)));
+        directions.add(squared(probe.noise));
+        bandLimit.add(-probe.exact.c[0] * kSqrt4Pi - squared(probe.exact));
+    }
+    errors.total = total.result();
+    errors.angular = angular.result();
+    errors.radial = radial.result();
+    errors.quantisation = quantisation.result();
+    errors.directions = directions.result();
+    errors.bandLimit = bandLimit.result();
+    return errors;
+}
+
+} // namespace penumbra

@@ -1,0 +1,23 @@
+// How far a field is from the exact one, by cause.
+#pragma once
+
+#include "assetc/bake/field_samples.h"
+#include "assetc/bake/probes.h"
+
+namespace penumbra {
+
+// `samples`: the adapted field before it became bytes; `field`: those bytes. A probe counts where
+// its three points see something. The causes:
+//   total         trilinear, as a reader samples the bytes, at the probe
+//   angular       bilinear in the samples of a shell, on that shell in the probe's direction;
+//                 includes what adaptation took away
+//   radial        linear between the exact values on the two shells, at the probe
+//   quantisation  bytes against samples, at the probe
+//   directions    half the difference between the fields of every other direction: what the other
+//                 causes cannot know, since their exact values have the same directions
+//   bandLimit     the blocked directions are a function B of 0 and 1, so |B|² = ∫B, and its part
+//                 beyond order 4 is |B|² - sum b_i²
+FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
+                          const std::vector<Probe>& probes);
+
+} // namespace penumbra
