@@ -30,7 +30,8 @@ private:
 } // namespace
 
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
-                                   const CompileOptions& options, Progress& progress)
+                                   const CompileOptions& options, Progress& progress,
+                                   std::vector<AskedFile>* asked)
 {
     CompiledAsset asset;
     CompileReport& report = asset.report;
@@ -40,7 +41,7 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
     {
         // Triangles of the whole file in its world space.
         const StageTimer timer(report.times, "import");
-        auto imported = importMesh(source);
+        auto imported = importMesh(source, asked);
         if (!imported)
             return imported.error();
         mesh = std::move(imported->mesh);

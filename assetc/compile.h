@@ -4,6 +4,7 @@
 #include "assetc/adapt.h"
 #include "assetc/bake.h"
 #include "assetc/import/clean.h"
+#include "assetc/import/folder.h"
 #include "assetc/order.h"
 #include "assetc/target_error.h"
 #include "assetc/verify.h"
@@ -44,8 +45,9 @@ struct CompiledAsset {
 };
 
 // Same input, options and version: same bytes, whatever the thread count. Uses the TBB arena of the
-// caller.
+// caller. `asked` gets the other files that the source names.
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
-                                   const CompileOptions& options, Progress& progress);
+                                   const CompileOptions& options, Progress& progress,
+                                   std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -1,5 +1,6 @@
 #include "assetc/environment.h"
 
+#include "assetc/file_type.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -132,7 +133,7 @@ std::vector<vec3> boxFilter(const EnvironmentSource& source, const Filter& filte
 
 Result<EnvironmentSource> readEnvironmentSource(const std::filesystem::path& path)
 {
-    const Result<std::vector<std::byte>> bytes = readFile(path, kMaxSourceBytes);
+    const Result<std::vector<std::byte>> bytes = readFile(path, kMaxPictureBytes);
     if (!bytes)
         return bytes.error();
     const auto startsWith = [&](std::string_view magic) {
@@ -145,6 +146,9 @@ Result<EnvironmentSource> readEnvironmentSource(const std::filesystem::path& pat
         source = decodeOpenExr(*bytes);
     else if (startsWith("#?"))
         source = decodeRadianceHdr(*bytes);
+    else if (const RecognisedFile file = recogniseFile(*bytes);
+             file.bySignature || file.type != FileType::Other)
+        source = Error{fileTypeText(file)};
     if (!source)
         return fail(source.error(), path.string());
     const std::int64_t skew = std::int64_t{source->width} - 2 * std::int64_t{source->height};

@@ -21,7 +21,7 @@
 namespace penumbra {
 
 PENUMBRA_CONST std::uint32_t kMaxSourceWidth = 16384, kMaxSourceHeight = 8192;
-PENUMBRA_CONST std::uint64_t kMaxSourceBytes = 1ull << 30;
+PENUMBRA_CONST std::uint64_t kMaxPictureBytes = 1ull << 30;
 PENUMBRA_CONST float kAbsurdLuminance =
     1000.0f; // W/(m² sr); no lamp of a usually exposed map, where white is about 1
 

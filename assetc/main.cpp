@@ -2,6 +2,7 @@
 #include "assetc/commands/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <numeric>
 #include <optional>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -22,6 +23,41 @@ std::string checkSide(const std::string& text)
 std::string checkEven(const std::string& text)
 {
     return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string() : text + " is not even";
+}
+
+// Single letters to insert, delete or replace to make `b` of `a`.
+std::size_t editDistance(std::string_view a, std::string_view b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j)
+            diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1,
+                                                           diagonal + (a[i] == b[j] ? 0 : 1)}));
+    }
+    return row.back();
+}
+
+// CLI11 says of a wrong command only that one is required. Empty where the first word is one.
+std::string checkCommand(const CLI::App& app, std::string_view word)
+{
+    constexpr std::size_t kMostEdits = 2; // more is another word, not a slip
+    const CLI::App* nearest = nullptr;
+    std::size_t edits = kMostEdits + 1;
+    std::string names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        const std::size_t distance = editDistance(word, command->get_name());
+        if (distance == 0)
+            return {};
+        if (distance < edits) {
+            edits = distance;
+            nearest = command;
+        }
+        names += (names.empty() ? "" : ", ") + command->get_name();
+    }
+    const std::string start = fmt::format("\"{}\" is not a command; ", word);
+    return start + (nearest ? "did you mean " + nearest->get_name() + "?" : "known: " + names);
 }
 
 int run(int argc, char** argv)
@@ -76,16 +112,32 @@ int run(int argc, char** argv)
     environmentCommand->add_option("-o,--output", environment.output, "OUT.env")->required();
     environmentCommand->add_option("--report", environment.report, "Write what was done as JSON");
 
+    BuildArguments build;
+    CLI::App* buildCommand =
+        app.add_subcommand("build", "Compile what changed among the assets that a manifest lists");
+    buildCommand->add_option("MANIFEST", build.manifest, "See docs/build_manifest.md")->required();
+    buildCommand->add_option("-o,--output", build.output, "Folder of the outputs")->required();
+    buildCommand->add_option("--jobs", jobs, "Threads; all processors by default")
+        ->check(CLI::Range(1u, 1024u));
+    buildCommand->add_flag("--watch", build.watch, "Build again at each change, until interrupted");
+    buildCommand->add_option("--report", build.report, "Write what was done as JSON");
+
     std::filesystem::path file;
     bool json = false;
-    CLI::App* inspectCommand = app.add_subcommand("inspect", "Say what is in a compiled asset");
-    CLI::App* validateCommand =
-        app.add_subcommand("validate", "Check a compiled asset: exit code 0 valid, 1 invalid");
+    CLI::App* inspectCommand =
+        app.add_subcommand("inspect", "Say what is in a file: compiled asset, source or manifest");
+    CLI::App* validateCommand = app.add_subcommand(
+        "validate", "Check a file of any of these: exit code 0 valid, 1 invalid");
     for (CLI::App* command : {inspectCommand, validateCommand}) {
-        command->add_option("FILE", file, ".glb or .env")->required();
+        command->add_option("FILE", file, "Told by its content, not its name")->required();
         command->add_flag("--json", json, "As JSON");
     }
 
+    if (argc > 1 && argv[1][0] != '-')
+        if (const std::string wrong = checkCommand(app, argv[1]); !wrong.empty()) {
+            spdlog::error("{}", wrong);
+            return kExitUsage;
+        }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -100,6 +152,8 @@ int run(int argc, char** argv)
     }
     if (*environmentCommand)
         return runEnvironment(environment);
+    if (*buildCommand)
+        return runBuild(build);
     return *inspectCommand ? runInspect(file, json) : runValidate(file, json);
 }
 

@@ -8,8 +8,9 @@ namespace penumbra {
 
 using Clock = std::chrono::steady_clock;
 
-Progress::Progress(std::string title)
-    : m_title(std::move(title)), m_terminal(::isatty(STDERR_FILENO) == 1)
+Progress::Progress(std::string title, Show show)
+    : m_title(std::move(title)),
+      m_terminal(show == Show::OnTerminal && ::isatty(STDERR_FILENO) == 1)
 {}
 
 Progress::~Progress()

@@ -11,7 +11,8 @@ namespace penumbra {
 
 class Progress {
 public:
-    explicit Progress(std::string title);
+    enum class Show { OnTerminal, Never }; // Never: where several assets share the terminal
+    explicit Progress(std::string title, Show show = Show::OnTerminal);
     ~Progress(); // clears the line
 
     void begin(std::string stage, std::uint64_t steps);

@@ -1,5 +1,6 @@
 #include "assets/json_reader.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace penumbra {
@@ -31,6 +32,21 @@ int nestingDepth(std::string_view text)
     return deepest;
 }
 
+// Only after parsing failed, so that the usual way costs no exception.
+std::string syntaxPlace(std::string_view text)
+{
+    try {
+        const nlohmann::json ignored = nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::string_view before = text.substr(0, error.byte == 0 ? 0 : error.byte - 1);
+        const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+        return fmt::format(" at line {}, column {}", line,
+                           before.size() - (before.rfind('\n') + 1) + 1);
+    } catch (const nlohmann::json::exception&) {
+    }
+    return {};
+}
+
 } // namespace
 
 Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
@@ -41,7 +57,7 @@ Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
         return Error{fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth)};
     nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
     if (document.is_discarded())
-        return Error{"not valid JSON"};
+        return Error{"not valid JSON" + syntaxPlace(text)};
     if (!document.is_object())
         return Error{"JSON whose root is not an object"};
     return document;
@@ -49,7 +65,7 @@ Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
 
 JsonReader JsonReader::member(const char* key) const
 {
-    const std::string place = m_place + "." + key;
+    const std::string place = m_place.empty() ? key : m_place + "." + key;
     if (!m_value)
         return {nullptr, place, *m_problems};
     const auto found = m_value->is_object() ? m_value->find(key) : m_value->end();
@@ -122,6 +138,33 @@ std::string JsonReader::asText() const
     return m_value->get<std::string>();
 }
 
+bool JsonReader::asFlag() const
+{
+    if (!m_value)
+        return false;
+    if (!m_value->is_boolean()) {
+        refuse("is not true or false");
+        return false;
+    }
+    return m_value->get<bool>();
+}
+
+void JsonReader::refuseOthers(std::initializer_list<std::string_view> known) const
+{
+    if (!m_value)
+        return;
+    if (!m_value->is_object()) {
+        refuse("is not an object");
+        return;
+    }
+    for (const auto& [key, value] : m_value->items())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            refuse(fmt::format("has no member \"{}\"; known: {}", key.substr(0, 60),
+                               known.size() > 0
+                                   ? fmt::format("{}", fmt::join(known.begin(), known.end(), ", "))
+                                   : "none"));
+}
+
 std::uint64_t JsonReader::count(const char* key, std::uint64_t max) const
 {
     return member(key).asCount(max);
@@ -139,7 +182,7 @@ std::string JsonReader::text(const char* key) const
 
 void JsonReader::refuse(const std::string& what) const
 {
-    m_problems->push_back({m_place + " " + what});
+    m_problems->push_back({m_place.empty() ? what : m_place + " " + what});
 }
 
 } // namespace penumbra

@@ -1,6 +1,6 @@
 // Reading of untrusted JSON. parseJson bounds size and depth before the parser sees the text.
 // JsonReader walks the document and collects problems, each with its place, so that callers read
-// everything and check once:
+// everything and check once (a root with an empty place gives places like "assets[3].name"):
 //   JsonProblems problems;
 //   const JsonReader root(document, "json", problems);
 //   const std::uint64_t count = root.member("accessors").element(3).count("count", kMax);
@@ -12,6 +12,7 @@
 #include "runtime/result.h"
 
 #include <cstdint>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -23,7 +24,7 @@ namespace penumbra {
 constexpr int kMaxJsonDepth = 64;
 
 // Parses UTF-8 text of at most `maxBytes`, nested at most kMaxJsonDepth deep; the root is an
-// object.
+// object. An error of syntax names line and column.
 Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes);
 
 using JsonProblems = std::vector<Error>;
@@ -38,17 +39,23 @@ public:
     [[nodiscard]] JsonReader member(const char* key) const;
     [[nodiscard]] JsonReader element(std::size_t index) const;
     [[nodiscard]] bool has(const char* key) const;
+    [[nodiscard]] bool isText() const { return m_value && m_value->is_string(); }
 
     // The value itself: array length, whole number 0..max, finite number in [min, max], text, flag.
     [[nodiscard]] std::size_t length(std::size_t max) const;
     [[nodiscard]] std::uint64_t asCount(std::uint64_t max) const;
     [[nodiscard]] float asNumber(float min, float max) const;
     [[nodiscard]] std::string asText() const;
+    [[nodiscard]] bool asFlag() const;
 
     // The same of a required member.
     [[nodiscard]] std::uint64_t count(const char* key, std::uint64_t max) const;
     [[nodiscard]] float number(const char* key, float min, float max) const;
     [[nodiscard]] std::string text(const char* key) const;
+
+    // Records a problem for each member that is none of `known`, or if this is no object. For files
+    // that people write: there an unknown member is a slip of the pen.
+    void refuseOthers(std::initializer_list<std::string_view> known) const;
 
     // Records a problem at this place.
     void refuse(const std::string& what) const;

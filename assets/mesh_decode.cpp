@@ -118,7 +118,10 @@ ShadowField readFieldHead(const JsonReader& extension)
 void checkPayload(const JsonReader& extension, const char* member,
                   std::span<const std::byte> payload)
 {
-    if (extension.has(member) && extension.text(member) != checksumText(payload))
+    if (!extension.has(member))
+        return;
+    const JsonReader stated = extension.member(member);
+    if (stated.asText() != checksumText(payload) && stated.isText())
         extension.refuse(fmt::format("has a {} that its data does not: the file is damaged, or "
                                      "another program rewrote it; compile it again",
                                      member));

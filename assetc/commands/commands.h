@@ -21,11 +21,17 @@ struct EnvironmentArguments {
 };
 int runEnvironment(const EnvironmentArguments& arguments);
 
+struct BuildArguments {
+    std::filesystem::path manifest, output, report;
+    bool watch = false;
+};
+// Ends the process with 130 on SIGINT and 143 on SIGTERM; with `watch`, 0 on either.
+int runBuild(const BuildArguments& arguments);
+
+// Any kind of file, told by its content: compiled assets, sources, manifests. A source is valid if
+// it can be read.
 int runInspect(const std::filesystem::path& file, bool json);
 int runValidate(const std::filesystem::path& file, bool json);
-
-// Whether the file is an environment (.env) rather than a mesh, by its name.
-bool isEnvironmentFile(const std::filesystem::path& file);
 
 // True where `output` ends in `extension` and is not the input itself; otherwise says so on stderr.
 bool checkOutput(const std::filesystem::path& input, const std::filesystem::path& output,

@@ -7,7 +7,8 @@ namespace penumbra {
 
 namespace fs = std::filesystem;
 
-Result<fs::path> resolveInFolder(const fs::path& folder, const std::string& name)
+Result<fs::path> resolveInFolder(const fs::path& folder, const std::string& name,
+                                 std::vector<AskedFile>* asked)
 {
     const fs::path relative(name);
     const bool climbs =
@@ -20,6 +21,8 @@ Result<fs::path> resolveInFolder(const fs::path& folder, const std::string& name
     std::error_code error;
     const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
     const fs::path file = error ? fs::path() : fs::canonical(root / relative, error);
+    if (asked)
+        asked->push_back({relative.lexically_normal().string(), !error});
     if (error)
         return Error{fmt::format("\"{}\": {}", name, error.message())};
     if (std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end())

@@ -230,10 +230,10 @@ private:
 
 } // namespace
 
-Result<ImportedMesh> importGltf(const std::filesystem::path& path)
+Result<ImportedMesh> importGltf(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
     ImportedMesh out;
-    const auto model = loadGltf(path, out.warnings);
+    const auto model = loadGltf(path, out.warnings, asked);
     if (!model)
         return model.error();
     SceneMerger merger(*model, out);

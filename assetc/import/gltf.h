@@ -1,6 +1,7 @@
 // glTF 2.0, text or binary.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
 #include <filesystem>
@@ -12,6 +13,7 @@ namespace penumbra {
 // pose that the file stores. Draco, quantised, sparse and interleaved attributes are read;
 // extensions that the file requires beyond these are refused by name. The albedo is the base colour
 // factor of the primitive with the largest area.
-Result<ImportedMesh> importGltf(const std::filesystem::path& path);
+Result<ImportedMesh> importGltf(const std::filesystem::path& path,
+                                std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -1,6 +1,5 @@
 #include "assetc/import/gltf_document.h"
 
-#include "assetc/import/folder.h"
 #include "assetc/import/gltf_check.h"
 #include "assets/glb.h"
 #include "assets/json_reader.h"
@@ -104,7 +103,8 @@ Result<void> checkNumbers(const json& value, const std::string& place)
 }
 
 // Sizes and places of all buffers, before tinygltf allocates or opens any.
-Result<void> checkBuffers(const json& document, const std::filesystem::path& folder)
+Result<void> checkBuffers(const json& document, const std::filesystem::path& folder,
+                          std::vector<AskedFile>* asked)
 {
     const auto buffers = document.find("buffers");
     if (buffers == document.end())
@@ -118,7 +118,7 @@ Result<void> checkBuffers(const json& document, const std::filesystem::path& fol
         sum += buffer.count("byteLength", kMaxSourceBytes);
         const std::string uri = buffer.has("uri") ? buffer.text("uri") : "";
         if (!uri.empty() && !uri.starts_with("data:"))
-            if (const auto path = resolveInFolder(folder, decodeUri(uri)); !path)
+            if (const auto path = resolveInFolder(folder, decodeUri(uri), asked); !path)
                 buffer.refuse(".uri: " + path.error().message);
         if (!problems.empty())
             return problems.front();
@@ -156,7 +156,7 @@ void dropUnread(json& document, std::vector<std::string>& warnings)
 } // namespace
 
 Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
-                                 std::vector<std::string>& warnings)
+                                 std::vector<std::string>& warnings, std::vector<AskedFile>* asked)
 {
     const auto bytes = readFile(path, kMaxSourceBytes);
     if (!bytes)
@@ -178,7 +178,7 @@ Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
     Source source{path.parent_path()};
     if (const auto extensions = checkExtensions(*document); !extensions)
         return extensions.error();
-    if (const auto buffers = checkBuffers(*document, source.folder); !buffers)
+    if (const auto buffers = checkBuffers(*document, source.folder, asked); !buffers)
         return buffers.error();
     dropUnread(*document, warnings);
     if (const auto numbers = checkNumbers(*document, ""); !numbers)

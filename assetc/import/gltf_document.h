@@ -4,6 +4,7 @@
 // checkModel, since tinygltf checks few of its indices.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
 #include <filesystem>
@@ -14,6 +15,7 @@ namespace penumbra {
 // On success every index in the model points at something, every accessor lies in its buffer and
 // nodes form a forest. Primitives with Draco geometry have no `indices`: the payload has them.
 Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
-                                 std::vector<std::string>& warnings);
+                                 std::vector<std::string>& warnings,
+                                 std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -1,6 +1,7 @@
 // Triangles out of a .glb, .gltf or .obj file.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
 #include <filesystem>
@@ -9,7 +10,9 @@ namespace penumbra {
 
 // The format follows the extension. Any bytes give a mesh or an Error that names the place. The
 // mesh may have no triangles, degenerate ones and missing normals: assetc/import/clean.h comes
-// next.
-Result<ImportedMesh> importMesh(const std::filesystem::path& path);
+// next. `asked` gets the other files that the file names (buffers, material libraries), of a file
+// that is refused too.
+Result<ImportedMesh> importMesh(const std::filesystem::path& path,
+                                std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

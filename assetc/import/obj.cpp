@@ -1,6 +1,5 @@
 #include "assetc/import/obj.h"
 
-#include "assetc/import/folder.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -28,15 +27,16 @@ Result<std::string> readText(const std::filesystem::path& path, std::uint64_t ma
 // the mesh.
 class ConfinedMaterialReader : public tinyobj::MaterialReader {
 public:
-    ConfinedMaterialReader(std::filesystem::path folder, std::vector<std::string>& warnings)
-        : m_folder(std::move(folder)), m_warnings(warnings)
+    ConfinedMaterialReader(std::filesystem::path folder, std::vector<std::string>& warnings,
+                           std::vector<AskedFile>* asked)
+        : m_folder(std::move(folder)), m_warnings(warnings), m_asked(asked)
     {}
 
     bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                     std::map<std::string, int>* indexOf, std::string* warning,
                     std::string* error) override
     {
-        const auto path = resolveInFolder(m_folder, name);
+        const auto path = resolveInFolder(m_folder, name, m_asked);
         const auto text = path ? readText(*path, kMaxMaterialBytes) : path.error();
         if (!text) {
             m_warnings.push_back("material library not read: " + text.error().message);
@@ -50,6 +50,7 @@ public:
 private:
     std::filesystem::path m_folder;
     std::vector<std::string>& m_warnings;
+    std::vector<AskedFile>* m_asked; // may be null
 };
 
 // An index, or two or three with slashes: "3", "3/1", "3//2", "-1/-1/-1".
@@ -220,7 +221,7 @@ Result<void> addFaces(const ObjFile& file, MeshAsset& mesh)
 
 } // namespace
 
-Result<ImportedMesh> importObj(const std::filesystem::path& path)
+Result<ImportedMesh> importObj(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
     const auto text = readText(path, kMaxSourceBytes);
     if (!text)
@@ -228,7 +229,7 @@ Result<ImportedMesh> importObj(const std::filesystem::path& path)
     if (const auto lines = checkLines(*text); !lines)
         return lines.error();
     ImportedMesh out;
-    ConfinedMaterialReader materials(path.parent_path(), out.warnings);
+    ConfinedMaterialReader materials(path.parent_path(), out.warnings, asked);
     auto file = parse(*text, &materials, false);
     if (!file)
         return file.error();
@@ -239,7 +240,7 @@ Result<ImportedMesh> importObj(const std::filesystem::path& path)
         // The loader's triangulation reads vertices unchecked, so it runs on a file whose indices
         // are known to be good.
         std::vector<std::string> repeated;
-        ConfinedMaterialReader again(path.parent_path(), repeated);
+        ConfinedMaterialReader again(path.parent_path(), repeated, nullptr);
         file = parse(*text, &again, true);
         if (!file)
             return file.error();

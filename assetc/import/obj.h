@@ -1,6 +1,7 @@
 // Wavefront OBJ.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
 #include <filesystem>
@@ -10,6 +11,7 @@ namespace penumbra {
 // All faces of the file, triangulated. Material libraries are read only from the file's own folder;
 // the albedo is Kd of the material with the largest area. An index that names nothing is refused
 // with its place.
-Result<ImportedMesh> importObj(const std::filesystem::path& path);
+Result<ImportedMesh> importObj(const std::filesystem::path& path,
+                               std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -115,7 +115,95 @@ TEST_F(CommandLine, ValidateListsEveryProblem)
     EXPECT_EQ(run("validate " + at("missing.glb")).code, 1);
     EXPECT_EQ(nlohmann::json::parse(run("validate --json " + at("missing.glb")).out)["valid"],
               false);
-    EXPECT_EQ(run("validate " + at("square.gltf")).code, 1); // not compiled
+}
+
+TEST_F(CommandLine, ValidateListsAChecksumThatIsNoTextOnce)
+{
+    folder.write("square.gltf", squareGltf().dump());
+    ASSERT_EQ(run("bake " + at("square.gltf") + " -o " + at("a.glb") + quick).code, 0);
+    std::string bytes = readText(folder / "a.glb");
+    const std::size_t begin = bytes.find("\"geometryChecksum\":\"") + 19;
+    ASSERT_EQ(bytes[begin], '"');
+    bytes.replace(begin, 18, "123456789012345678");
+    folder.write("bad.glb", bytes);
+    const Outcome outcome = run("validate " + at("bad.glb"));
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2) << outcome.out;
+}
+
+TEST_F(CommandLine, InspectAndValidateTellFilesByTheirContent)
+{
+    auto square = squareGltf();
+    const auto gltf = square.dump();
+    const std::string sky = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
+                            std::string("\x80\x40\x20\x81\x80\x40\x20\x81", 8);
+    folder.write("a.gltf", gltf);
+    folder.write("a.obj", "# a triangle\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("b.hdr", sky);
+    folder.write("m.json", R"({"version":1,"assets":[{"name":"a","source":"a.obj"}]})");
+    ASSERT_EQ(run("bake " + at("a.gltf") + " -o " + at("a.glb") + " --no-field").code, 0);
+    ASSERT_EQ(run("environment " + at("b.hdr") + " -o " + at("b.env")).code, 0);
+    std::filesystem::copy_file(folder / "a.glb", folder / "compiled.bin");
+    std::filesystem::copy_file(folder / "b.env", folder / "b.glb");
+    for (const auto& [name, type, says] :
+         {std::tuple{"a.gltf", "mesh source", "compile it with assetc bake"},
+          {"a.obj", "mesh source", "a.mtl: missing"},
+          {"b.hdr", "environment source", "compile it with assetc environment"},
+          {"m.json", "manifest", "1 mesh"},
+          {"a.glb", "mesh", "4 vertices"},
+          {"compiled.bin", "mesh", "4 vertices"},
+          {"b.env", "environment", "2x1"},
+          {"b.glb", "environment", "2x1"}}) {
+        const Outcome human = run(std::string("inspect ") + at(name));
+        EXPECT_EQ(human.code, 0) << name << human.err;
+        EXPECT_NE(human.out.find(says), std::string::npos) << human.out;
+        EXPECT_EQ(nlohmann::json::parse(run("inspect --json " + at(name)).out)["type"], type);
+        EXPECT_EQ(run("validate " + at(name)).code, 0) << name;
+        EXPECT_EQ(nlohmann::json::parse(run("validate --json " + at(name)).out)["valid"], true);
+    }
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 zero\n");
+    folder.write("bad.json", R"({"version":1,"assets":[{"name":"a"},{"name":"b"}]})");
+    EXPECT_NE(run("validate " + at("bad.obj")).out.find("bad.obj: line 2"), std::string::npos);
+    const auto bad = nlohmann::json::parse(run("validate --json " + at("bad.json")).out);
+    EXPECT_EQ(bad["valid"], false);
+    EXPECT_EQ(bad["problems"].size(), 2u);
+}
+
+TEST_F(CommandLine, WrongKindsOfFileAreNamed)
+{
+    folder.write("png.glb", "\x89PNG\r\n\x1a\n....");
+    folder.write("sky.exr", "\x76\x2f\x31\x01....");
+    folder.write("scene.fbx", "Kaydara FBX Binary  ....");
+    folder.write("empty.glb", "");
+    folder.write("what.dat", "\x01\x02\x03");
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (const auto& [command, says] :
+         {std::pair{"inspect " + at("png.glb"), "a PNG picture"},
+          {"inspect " + at("scene.fbx"), "an FBX scene; export it as glTF"},
+          {"inspect " + at("empty.glb"), "an empty file"},
+          {"inspect " + at("what.dat"), "no file that assetc knows"},
+          {"bake " + at("sky.exr") + " -o " + at("o.glb"),
+           "an OpenEXR picture; compile it with assetc environment"},
+          {"bake " + at("png.glb") + " -o " + at("o.glb"), "a PNG picture"},
+          {"environment " + at("a.obj") + " -o " + at("o.env"),
+           "a Wavefront OBJ mesh; compile it with assetc bake"}}) {
+        const Outcome outcome = run(command);
+        EXPECT_EQ(outcome.code, 1) << command;
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+        EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    }
+}
+
+TEST_F(CommandLine, WrongCommandsAreNamed)
+{
+    for (const auto& [word, says] :
+         {std::pair{"bak", "\"bak\" is not a command; did you mean bake?"},
+          {"biuld", "did you mean build?"},
+          {"fry", "\"fry\" is not a command; known: bake"}}) {
+        const Outcome outcome = run(word);
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+    }
 }
 
 } // namespace penumbra

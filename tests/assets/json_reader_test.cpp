@@ -65,4 +65,32 @@ TEST(JsonReader, RangesAndTypes)
     EXPECT_TRUE(refuses([](const JsonReader& r) { return r.text("t"); }));
 }
 
+TEST(JsonReader, SyntaxErrorsNameLineAndColumn)
+{
+    const auto document = parseJson("{\n  \"a\": 1,\n  \"b\" 2}", 100);
+    ASSERT_FALSE(document);
+    EXPECT_EQ(document.error().message, "not valid JSON at line 3, column 7");
+}
+
+// As files that people write are read: flags, no unknown members, places without a root.
+TEST(JsonReader, FlagsAndUnknownMembers)
+{
+    const auto document = parseJson(R"({"a":{"on":true,"off":0,"zzz":1}, "list":[]})", 1000);
+    ASSERT_TRUE(document);
+    JsonProblems problems;
+    const JsonReader root(*document, "", problems);
+    EXPECT_TRUE(root.member("a").member("on").asFlag());
+    root.refuseOthers({"a", "list"});
+    EXPECT_TRUE(problems.empty());
+    EXPECT_FALSE(root.member("a").member("off").asFlag());
+    root.member("a").refuseOthers({"on", "off"});
+    root.member("list").refuseOthers({});
+    EXPECT_EQ(root.member("b").asText(), "");
+    ASSERT_EQ(problems.size(), 4u);
+    EXPECT_EQ(problems[0].message, "a.off is not true or false");
+    EXPECT_EQ(problems[1].message, "a has no member \"zzz\"; known: on, off");
+    EXPECT_EQ(problems[2].message, "list is not an object");
+    EXPECT_EQ(problems[3].message, "has no \"b\"");
+}
+
 } // namespace penumbra

@@ -1,0 +1,102 @@
+#include "assetc/build/asset_kind.h"
+
+#include "assetc/environment.h"
+#include "assetc/report.h"
+
+namespace penumbra {
+
+namespace {
+
+std::uint32_t wholeNumber(const JsonReader& value, std::uint32_t min, std::uint32_t max)
+{
+    const std::uint64_t number = value.asCount(max);
+    if (number < min)
+        value.refuse(fmt::format("is not a whole number from {} to {}", min, max));
+    return static_cast<std::uint32_t>(number);
+}
+
+// The members that are there, over the values that `assetc bake` has by default.
+CompileOptions readMeshOptions(const JsonReader& options)
+{
+    CompileOptions result;
+    BakeOptions& bake = result.bake;
+    options.refuseOthers({"shells", "maxSide", "directions", "threshold", "field"});
+    if (options.has("shells"))
+        bake.shells = wholeNumber(options.member("shells"), 2, kMaxFieldShells);
+    if (options.has("maxSide")) {
+        const JsonReader side = options.member("maxSide");
+        bake.side = wholeNumber(side, 3, kMaxFieldSide);
+        if (((bake.side - 1) & (bake.side - 2)) != 0)
+            side.refuse("is not 2^k + 1");
+    }
+    if (options.has("directions")) {
+        const JsonReader directions = options.member("directions");
+        bake.directions = wholeNumber(directions, 2, 65536);
+        if (bake.directions % 2 != 0)
+            directions.refuse("is not even");
+    }
+    if (options.has("threshold"))
+        result.adaptThreshold = options.number("threshold", 0, 1);
+    if (options.has("field"))
+        bake.field = options.member("field").asFlag();
+    return result;
+}
+
+void checkMeshOptions(const JsonReader& options)
+{
+    static_cast<void>(readMeshOptions(options));
+}
+
+Result<CompiledBytes> compileMesh(const std::filesystem::path& source,
+                                  const nlohmann::json& options, std::vector<AskedFile>& asked)
+{
+    JsonProblems none;
+    const CompileOptions parsed = readMeshOptions(JsonReader(options, "options", none));
+    Progress progress(source.stem().string(), Progress::Show::Never);
+    auto asset = compileAsset(source, parsed, progress, &asked);
+    if (!asset)
+        return asset.error();
+    std::string report = compileReport(source, *asset);
+    return CompiledBytes{std::move(asset->bytes), std::move(asset->report.warnings),
+                         std::move(report)};
+}
+
+void checkEnvironmentOptions(const JsonReader& options)
+{
+    options.refuseOthers({});
+}
+
+Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, const nlohmann::json&,
+                                         std::vector<AskedFile>&)
+{
+    const auto environment = importEnvironment(source);
+    if (!environment)
+        return environment.error();
+    auto bytes = encodeEnvironment(*environment);
+    if (!bytes)
+        return fail(bytes.error(), source.string());
+    CompiledBytes result{std::move(*bytes), {}, environmentReport(*environment)};
+    const EnvironmentStatistics& statistics = environment->statistics;
+    if (statistics.negative + statistics.absurd > 0)
+        result.warnings.push_back(
+            fmt::format("{} pixels with negative channels and {} absurd ones were clamped",
+                        statistics.negative, statistics.absurd));
+    return result;
+}
+
+constexpr const char* kMeshEndings[] = {".glb", ".gltf", ".obj"};
+constexpr const char* kEnvironmentEndings[] = {".hdr", ".exr"};
+
+constexpr AssetKind kKinds[] = {
+    {"mesh", ".glb", kMeshEndings, checkMeshOptions, compileMesh},
+    {"environment", ".env", kEnvironmentEndings, checkEnvironmentOptions, compileEnvironment},
+};
+
+} // namespace
+
+std::span<const AssetKind> assetKinds()
+{
+    return kKinds;
+}
+
+} // namespace penumbra

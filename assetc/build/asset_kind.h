@@ -1,0 +1,34 @@
+// The kinds of asset that a manifest can name. A new kind is one row in asset_kind.cpp.
+#pragma once
+
+#include "assetc/import/folder.h"
+#include "assets/json_reader.h"
+
+#include <span>
+
+namespace penumbra {
+
+struct CompiledBytes {
+    std::vector<std::byte> bytes;
+    std::vector<std::string> warnings;
+    std::string report; // JSON, as the kind's own command writes it
+};
+
+struct AssetKind {
+    const char* name;            // in the manifest
+    const char* outputExtension; // ".glb"
+    std::span<const char* const>
+        sourceEndings; // ".obj": in lower case; what the kind is guessed by
+
+    // Records every problem of `options`, an object; all members are optional.
+    void (*checkOptions)(const JsonReader& options);
+
+    // `options` has passed the check. `asked` gets the files that the source names beside itself,
+    // of a source that is refused too. Same source, files and options: same bytes.
+    Result<CompiledBytes> (*compile)(const std::filesystem::path& source,
+                                     const nlohmann::json& options, std::vector<AskedFile>& asked);
+};
+
+std::span<const AssetKind> assetKinds();
+
+} // namespace penumbra

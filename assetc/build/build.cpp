@@ -1,0 +1,140 @@
+#include "assetc/build/asset_build.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <set>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+namespace penumbra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// An asset whose output is some asset's source fails, before anything is written.
+void refuseOverwrites(const Manifest& manifest, const AssetBuild& build,
+                      std::vector<AssetOutcome>& outcomes)
+{
+    std::error_code ignored;
+    std::map<fs::path, std::string> places;
+    for (const ManifestAsset& asset : manifest.assets)
+        places.emplace(fs::weakly_canonical(asset.source, ignored), asset.place);
+    for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
+        const fs::path output = build.outputPath(manifest.assets[i]);
+        const auto found = places.find(fs::weakly_canonical(output, ignored));
+        if (found != places.end())
+            outcomes[i].message =
+                fmt::format("{}: the output would replace the source of {}; rename the asset or "
+                            "build into another folder",
+                            output.string(), found->second);
+    }
+}
+
+// Assets in order, each thread takes the next; the loops inside one are what other threads help
+// with at the end. Isolated, since a thread that waits in such a loop must not begin another asset:
+// it would hold two locks (see FolderLock) and the memory of two.
+void buildOpen(const Manifest& manifest, AssetBuild& build, const std::vector<std::size_t>& open,
+               BuildObserver& observer, std::vector<AssetOutcome>& outcomes)
+{
+    const std::size_t threads =
+        std::min({open.size(), static_cast<std::size_t>(tbb::info::default_concurrency()),
+                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)});
+    std::atomic<std::size_t> next = 0;
+    std::mutex observing;
+    const auto buildNext = [&](std::size_t i) {
+        const ManifestAsset& asset = manifest.assets[i];
+        {
+            const std::scoped_lock lock(observing);
+            observer.start(asset);
+        }
+        tbb::this_task_arena::isolate([&] { build.build(asset, outcomes[i]); });
+        const std::scoped_lock lock(observing);
+        observer.finish(asset, outcomes[i]);
+    };
+    tbb::task_group group;
+    for (std::size_t t = 0; t < threads; ++t)
+        group.run([&] {
+            for (std::size_t n = next++; n < open.size(); n = next++)
+                buildNext(open[n]);
+        });
+    group.wait();
+}
+
+// Outputs that are there and recorded, but of no asset of the manifest.
+std::vector<std::string> staleOutputs(const Manifest& manifest, const AssetBuild& build,
+                                      const fs::path& folder)
+{
+    std::set<std::string> known;
+    for (const ManifestAsset& asset : manifest.assets)
+        known.insert(asset.outputName());
+    std::vector<std::string> stale;
+    std::error_code error;
+    const fs::path records = build.stateFolder() / kRecordFolder;
+    for (fs::recursive_directory_iterator i(records, error), end; !error && i != end;
+         i.increment(error)) {
+        if (i->path().extension() != ".json")
+            continue;
+        std::string name = i->path().lexically_relative(records).replace_extension().string();
+        std::error_code ignored;
+        if (!known.contains(name) && fs::is_regular_file(folder / name, ignored))
+            stale.push_back(std::move(name));
+    }
+    std::sort(stale.begin(), stale.end());
+    return stale;
+}
+
+} // namespace
+
+Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folder,
+                                 BuildObserver& observer, std::mutex& writing)
+{
+    const auto begin = std::chrono::steady_clock::now();
+    // The program itself, not a version number: whoever builds assetc anew gets new assets.
+    const std::string compiler = fingerprintFile("/proc/self/exe", fileClock()).hash;
+    if (compiler.empty())
+        return Error{
+            "/proc/self/exe: cannot read the program itself, whose hash names its version"};
+    auto lock = FolderLock::open(folder / kStateFolder / "lock");
+    if (!lock)
+        return lock.error();
+    if (lock->tryAlone()) { // what is there now, no living process writes
+        std::error_code ignored;
+        fs::remove_all(folder / kStateFolder / kTemporaryFolder, ignored);
+    }
+    if (auto shared = lock->share(); !shared)
+        return fail(shared.error(), folder.string());
+
+    BuildOutcome outcome;
+    const std::size_t count = manifest.assets.size();
+    outcome.assets.resize(count);
+    AssetBuild build(manifest, folder, compiler, *lock, writing);
+    refuseOverwrites(manifest, build, outcome.assets);
+    std::vector<char> done(count, 0); // not bool: threads write neighbours
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        done[i] = !outcome.assets[i].message.empty() ||
+                  build.isUnchanged(manifest.assets[i], outcome.assets[i]);
+    });
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < count; ++i)
+        if (done[i] == 0)
+            open.push_back(i);
+    observer.begin(open.size());
+    buildOpen(manifest, build, open, observer, outcome.assets);
+
+    for (const AssetOutcome& asset : outcome.assets)
+        ++(asset.status == BuildStatus::Built       ? outcome.built
+           : asset.status == BuildStatus::Unchanged ? outcome.unchanged
+                                                    : outcome.failed);
+    outcome.stale = staleOutputs(manifest, build, folder);
+    outcome.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return outcome;
+}
+
+} // namespace penumbra

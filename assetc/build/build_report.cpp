@@ -1,0 +1,73 @@
+#include "assetc/build/build_report.h"
+
+#include "assetc/build/build_progress.h"
+
+#include <sys/resource.h>
+
+namespace penumbra {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* statusName(BuildStatus status)
+{
+    return status == BuildStatus::Built       ? "built"
+           : status == BuildStatus::Unchanged ? "unchanged"
+                                              : "failed";
+}
+
+std::uint64_t peakBytes()
+{
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in KiB
+}
+
+Json assetJson(const ManifestAsset& asset, const AssetOutcome& outcome)
+{
+    Json result = {{"name", asset.name},
+                   {"kind", asset.kind->name},
+                   {"output", asset.outputName()},
+                   {"status", statusName(outcome.status)},
+                   {"seconds", outcome.seconds},
+                   {"bytes", outcome.bytes},
+                   {"key", outcome.key}};
+    if (outcome.status == BuildStatus::Failed)
+        result["message"] = outcome.message;
+    result["warnings"] = outcome.warnings;
+    for (const WatchedFile& file : outcome.files)
+        result["files"].push_back(file.path.string());
+    if (!outcome.report.empty())
+        result["compile"] = Json::parse(outcome.report, nullptr, false);
+    return result;
+}
+
+} // namespace
+
+std::string buildSummary(const std::filesystem::path& folder, const BuildOutcome& outcome)
+{
+    return fmt::format("{}: {} assets, {} built, {} unchanged, {} failed, {}", folder.string(),
+                       outcome.assets.size(), outcome.built, outcome.unchanged, outcome.failed,
+                       secondsText(outcome.seconds));
+}
+
+std::string buildReport(const Manifest& manifest, const std::filesystem::path& folder,
+                        const BuildOutcome& outcome)
+{
+    Json report = {{"manifest", manifest.file.string()}, {"output", folder.string()}};
+    report["assets"] = Json::array();
+    std::uint64_t bytes = 0;
+    for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
+        report["assets"].push_back(assetJson(manifest.assets[i], outcome.assets[i]));
+        bytes += outcome.assets[i].bytes;
+    }
+    report["stale"] = outcome.stale;
+    report["totals"] = {{"assets", outcome.assets.size()}, {"built", outcome.built},
+                        {"unchanged", outcome.unchanged},  {"failed", outcome.failed},
+                        {"seconds", outcome.seconds},      {"bytes", bytes},
+                        {"peakBytes", peakBytes()}};
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace penumbra

@@ -1,0 +1,26 @@
+// The list of assets that `assetc build` keeps up to date; docs/build_manifest.md is its manual.
+#pragma once
+
+#include "assetc/build/asset_kind.h"
+
+namespace penumbra {
+
+struct ManifestAsset {
+    std::string name;             // plain relative path without extension
+    std::string place;            // in the manifest: "assets[3]"
+    std::filesystem::path source; // below the manifest's folder unless absolute
+    const AssetKind* kind = nullptr;
+    nlohmann::json options; // defaults of the kind, then the asset's own
+
+    [[nodiscard]] std::string outputName() const { return name + kind->outputExtension; }
+};
+
+struct Manifest {
+    std::filesystem::path file;
+    std::vector<ManifestAsset> assets; // names differ
+};
+
+// The manifest, or at least one problem, each with its place.
+std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems);
+
+} // namespace penumbra

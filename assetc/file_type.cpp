@@ -1,0 +1,128 @@
+#include "assetc/file_type.h"
+
+#include "assets/glb.h"
+#include "assets/json_reader.h"
+#include "assets/mesh_format.h"
+
+#include <algorithm>
+#include <array>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::size_t kMaxJsonBytes = 256u << 20; // a .gltf may hold its buffers as base64
+
+constexpr const char* kBake = "compile it with assetc bake";
+constexpr const char* kCompileMap = "compile it with assetc environment";
+constexpr const char* kExport = "export it as glTF (.glb), which assetc bake reads";
+constexpr const char* kNotAMap =
+    "assetc reads no such picture; light and sky come as OpenEXR or Radiance .hdr";
+
+struct Signature {
+    std::string_view begin;
+    FileType type;
+    const char* what;
+    const char* remedy;
+};
+
+// Files that begin with a fixed text.
+constexpr std::array kSignatures = {
+    Signature{"PENV", FileType::Environment, "a compiled environment", ""},
+    Signature{"\x76\x2f\x31\x01", FileType::EnvironmentSource, "an OpenEXR picture", kCompileMap},
+    Signature{"#?", FileType::EnvironmentSource, "a Radiance .hdr picture", kCompileMap},
+    Signature{"\x89PNG", FileType::Other, "a PNG picture", kNotAMap},
+    Signature{"\xff\xd8\xff", FileType::Other, "a JPEG picture", kNotAMap},
+    Signature{"DDS ", FileType::Other, "a DirectDraw picture", kNotAMap},
+    Signature{"\xabKTX", FileType::Other, "a KTX picture", kNotAMap},
+    Signature{"Kaydara FBX Binary", FileType::Other, "an FBX scene", kExport},
+    Signature{"BLENDER", FileType::Other, "a Blender file", kExport},
+    Signature{"ply", FileType::Other, "a PLY mesh", kExport},
+    Signature{"solid ", FileType::Other, "an STL mesh", kExport},
+    Signature{"<?xml", FileType::Other, "an XML file", "export it as glTF (.glb) if it is a scene"},
+    Signature{"PK\x03\x04", FileType::Other, "a zip archive", "unpack it"},
+    Signature{"\x1f\x8b", FileType::Other, "a gzip archive", "unpack it"},
+};
+
+bool hasFieldExtension(const nlohmann::json& document)
+{
+    const auto meshes = document.find("meshes");
+    if (meshes == document.end() || !meshes->is_array() || meshes->empty())
+        return false;
+    const nlohmann::json& mesh = meshes->front();
+    return mesh.is_object() && mesh.contains("extensions") && mesh["extensions"].is_object() &&
+           mesh["extensions"].contains(kFieldExtension);
+}
+
+RecognisedFile recogniseGlb(std::span<const std::byte> bytes)
+{
+    const auto glb = readGlb(bytes);
+    const auto document =
+        glb ? parseJson(glb->json, kMaxJsonBytes) : Result<nlohmann::json>(glb.error());
+    if (document && !hasFieldExtension(*document))
+        return {FileType::MeshSource, "a binary glTF file", kBake};
+    return {FileType::MeshAsset, document ? "a compiled mesh" : "a damaged binary glTF file", ""};
+}
+
+RecognisedFile recogniseJson(std::string_view text)
+{
+    const auto document = parseJson(text, kMaxJsonBytes);
+    if (!document)
+        return {FileType::Other, document.error().message, "mend it"};
+    if (document->contains("asset"))
+        return {FileType::MeshSource, "a glTF file", kBake};
+    if (document->contains("assets"))
+        return {FileType::Manifest, "a manifest", "build it with assetc build"};
+    return {FileType::Other, "JSON of another program", "assetc reads glTF and its own manifests"};
+}
+
+// Text whose first lines are those of an OBJ file.
+bool looksLikeObj(std::string_view text)
+{
+    constexpr std::array<std::string_view, 13> kWords = {
+        "v", "vn", "vt", "vp", "f", "o", "g", "s", "l", "p", "mtllib", "usemtl", "usemap"};
+    constexpr std::size_t kEnough = 100;
+    std::size_t known = 0;
+    for (std::size_t line = 0; line < kEnough && !text.empty(); ++line) {
+        const std::string_view all = text.substr(0, text.find_first_of("\r\n"));
+        text.remove_prefix(std::min(all.size() + 1, text.size()));
+        const std::size_t begin = all.find_first_not_of(" \t");
+        if (begin == std::string_view::npos || all[begin] == '#')
+            continue;
+        const std::string_view word =
+            all.substr(begin, std::min(all.find_first_of(" \t", begin), all.size()) - begin);
+        if (std::find(kWords.begin(), kWords.end(), word) == kWords.end())
+            return false;
+        ++known;
+    }
+    return known > 0;
+}
+
+} // namespace
+
+RecognisedFile recogniseFile(std::span<const std::byte> bytes)
+{
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    if (text.empty())
+        return {FileType::Other, "an empty file", "write it again"};
+    if (text.starts_with("glTF"))
+        return recogniseGlb(bytes);
+    for (const Signature& signature : kSignatures)
+        if (text.starts_with(signature.begin))
+            return {signature.type, signature.what, signature.remedy, true};
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin != std::string_view::npos && text[begin] == '{')
+        return recogniseJson(text);
+    if (looksLikeObj(text))
+        return {FileType::MeshSource, "a Wavefront OBJ mesh", kBake};
+    return {FileType::Other, "no file that assetc knows",
+            "it reads compiled meshes and environments, glTF, OBJ, OpenEXR, Radiance .hdr and "
+            "manifests"};
+}
+
+std::string fileTypeText(const RecognisedFile& file)
+{
+    return file.remedy.empty() ? file.what : file.what + "; " + file.remedy;
+}
+
+} // namespace penumbra

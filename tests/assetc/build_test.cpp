@@ -1,0 +1,260 @@
+// `assetc build`: what is compiled again, and what is not.
+#include "assets/environment.h"
+#include "assets/mesh_codec.h"
+#include "tests/assetc/build_fixture.h"
+
+namespace penumbra {
+
+TEST_F(BuildTest, BuildsThenNothing)
+{
+    writePyramids(3);
+    folder.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
+                                std::string("\x80\x40\x20\x81\x80\x40\x20\x81", 8));
+    manifest["assets"].push_back({{"name", "skies/sky"}, {"source", "sky.hdr"}});
+    writeManifest();
+    const auto first = build();
+    EXPECT_EQ(named(first, "built"), Names({"m0", "m1", "m2", "skies/sky"})) << outcome.err;
+    EXPECT_EQ(first["totals"]["built"], 4);
+    EXPECT_GT(first["totals"]["peakBytes"], 1 << 20);
+    EXPECT_EQ(first["assets"][0]["compile"]["field"]["shells"], 3); // the manifest's default
+    EXPECT_NE(outcome.out.find("4 assets, 4 built"), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.err, ""); // no progress in a pipe
+    for (const auto& [name, bytes] : files()) {
+        const auto span = std::as_bytes(std::span(bytes));
+        if (name.ends_with(".env"))
+            EXPECT_TRUE(decodeEnvironment(span)) << name;
+        else
+            EXPECT_TRUE(decodeMeshAsset(span)) << name;
+    }
+    const auto before = files();
+    EXPECT_EQ(before.size(), 4u);
+    const auto second = build();
+    EXPECT_EQ(named(second, "unchanged").size(), 4u);
+    EXPECT_EQ(second["assets"][0]["key"], first["assets"][0]["key"]);
+    EXPECT_EQ(files(), before);
+}
+
+TEST_F(BuildTest, ChangedContentRebuildsExactlyOne)
+{
+    writePyramids(3);
+    build();
+    folder.write("m1.obj", pyramid(2)); // as before: touched, not changed
+    EXPECT_EQ(named(build(), "built"), Names());
+    folder.write("m1.obj", pyramid(9)); // of the same size
+    EXPECT_EQ(named(build(), "built"), Names({"m1"}));
+    EXPECT_EQ(named(build(), "built"), Names());
+}
+
+TEST_F(BuildTest, ChangedContentOfAnEqualTimeIsSeen)
+{
+    writePyramids(2);
+    build();
+    const auto time = std::filesystem::last_write_time(folder / "m1.obj");
+    folder.write("m1.obj", pyramid(9));
+    std::filesystem::last_write_time(folder / "m1.obj", time);
+    EXPECT_EQ(named(build(), "built"), Names({"m1"}));
+}
+
+TEST_F(BuildTest, FilesBesideTheSourceCount)
+{
+    auto square = squareGltf();
+    const std::string uri = square["buffers"][0]["uri"];
+    const std::string positions = bytesOf<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    const std::string rest = bytesOf<std::uint16_t>({0, 1, 2, 0, 2, 3}) +
+                             bytesOf<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
+    square["buffers"][0]["uri"] = "parts/square%20a.bin";
+    folder.write("square.gltf", square.dump());
+    folder.write("parts/square a.bin", positions + rest);
+    folder.write("colour.obj", "mtllib colour.mtl\nusemtl red\n" + pyramid(1));
+    folder.write("plain.obj", pyramid(1));
+    for (const char* source : {"square.gltf", "colour.obj", "plain.obj"})
+        manifest["assets"].push_back({{"name", std::string(source, 5)}, {"source", source}});
+    writeManifest();
+    EXPECT_EQ(named(build(), "built").size(), 3u);
+    EXPECT_EQ(named(build(), "built"), Names());
+
+    const std::string moved = bytesOf<float>({0, 0, 0, 1, 0, 0, 1, 2, 0, 0, 1, 0});
+    folder.write("parts/square a.bin", moved + rest);
+    EXPECT_EQ(named(build(), "built"), Names({"squar"}));
+    folder.write("colour.mtl", "newmtl red\nKd 1 0 0\n"); // it was missing so far
+    EXPECT_EQ(named(build(), "built"), Names({"colou"}));
+    folder.write("colour.mtl", "newmtl red\nKd 0 1 0\n");
+    EXPECT_EQ(named(build(), "built"), Names({"colou"}));
+    EXPECT_EQ(named(build(), "built"), Names());
+}
+
+TEST_F(BuildTest, ChangedOptionsRebuildWhatHasThem)
+{
+    writePyramids(3);
+    const auto first = build();
+    manifest["assets"][2]["options"] = {{"shells", 4}};
+    writeManifest();
+    const auto second = build();
+    EXPECT_EQ(named(second, "built"), Names({"m2"}));
+    EXPECT_EQ(second["assets"][2]["compile"]["field"]["shells"], 4);
+    EXPECT_EQ(second["assets"][2]["compile"]["field"]["sides"][3], 5); // the default stays
+    manifest["defaults"]["mesh"]["directions"] = 34;
+    writeManifest();
+    EXPECT_EQ(named(build(), "built").size(), 3u);
+}
+
+TEST_F(BuildTest, LostOrSpoiltOutputIsMadeAgain)
+{
+    writePyramids(3);
+    build();
+    const auto good = files();
+    std::filesystem::remove(folder / "built/m0.glb");
+    std::string spoilt = good.at("m1.glb");
+    spoilt[spoilt.size() / 2] ^= 1;
+    folder.write("built/m1.glb", spoilt);
+    std::filesystem::remove(folder / "built/m2.glb.d");
+    EXPECT_EQ(named(build(), "built"), Names({"m0", "m1"}));
+    EXPECT_EQ(files(), good);
+    EXPECT_TRUE(std::filesystem::exists(folder / "built/m2.glb.d"));
+    for (const char* record : {"", "{}", "{\"version\":1,\"key\":7}", "\xff"}) { // damaged
+        folder.write("built/.penumbra/records/m0.glb.json", record);
+        EXPECT_EQ(named(build(), "built"), Names({"m0"})) << record;
+    }
+}
+
+TEST_F(BuildTest, AFailureStopsNoOther)
+{
+    writePyramids(4);
+    folder.write("m1.obj", "v 1 2 x\n");
+    std::filesystem::remove(folder / "m2.obj");
+    const auto report = build(1);
+    EXPECT_EQ(named(report, "built"), Names({"m0", "m3"}));
+    EXPECT_EQ(named(report, "failed"), Names({"m1", "m2"}));
+    EXPECT_NE(outcome.err.find("assets[1] \"m1\": "), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("m1.obj: line 1"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("assets[2] \"m2\": "), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "built/m1.glb"));
+    EXPECT_EQ(named(build(1), "failed"), Names({"m1", "m2"})); // again, since nothing changed
+    folder.write("m1.obj", pyramid(1));
+    folder.write("m2.obj", pyramid(1));
+    EXPECT_EQ(named(build(), "built"), Names({"m1", "m2"}));
+}
+
+TEST_F(BuildTest, SameBytesForAnyJobs)
+{
+    writePyramids(5);
+    build(0, "--jobs 1", "one");
+    build(0, "--jobs 2", "two");
+    EXPECT_EQ(files("one").size(), 5u);
+    EXPECT_EQ(files("one"), files("two"));
+}
+
+TEST_F(BuildTest, NoOutputReplacesASource)
+{
+    writePyramids(1);
+    build(0, "", "art");
+    const auto compiled = files("art");
+    folder.write("art/m1.glb", compiled.at("m0.glb"));
+    manifest["assets"].push_back({{"name", "m1"}, {"source", "art/m1.glb"}});
+    writeManifest();
+    const auto report = build(1, "", "art");
+    EXPECT_EQ(named(report, "failed"), Names({"m1"}));
+    EXPECT_NE(outcome.err.find("would replace the source of assets[1]"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(readText(folder / "art/m1.glb"), compiled.at("m0.glb"));
+}
+
+TEST_F(BuildTest, ForgottenOutputsAreNamedAndKept)
+{
+    writePyramids(2);
+    build();
+    manifest["assets"].erase(0);
+    writeManifest();
+    EXPECT_EQ(build()["stale"], nlohmann::json::array({"m0.glb"}));
+    EXPECT_EQ(files().size(), 2u);
+}
+
+TEST_F(BuildTest, WrongManifestsWriteNothing)
+{
+    writePyramids(1);
+    const std::string a = R"({"name":"a","source":"m0.obj")";
+    const auto nested = [](int depth) {
+        return std::string(static_cast<std::size_t>(depth), '[') +
+               std::string(static_cast<std::size_t>(depth), ']');
+    };
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"", "not valid JSON"},
+        {"[]", "root is not an object"},
+        {"{\n \"version\": 1,\n \"assets\": [}", "line 3, column 13"},
+        {"{\"a\":" + nested(60000) + "}", "nested deeper"},
+        {R"({"assets":[]})", "has no \"version\""},
+        {R"({"version":2,"assets":[]})", "version 2"},
+        {R"({"version":1})", "has no \"assets\""},
+        {R"({"version":1,"assets":{}})", "assets is not an array"},
+        {R"({"version":1,"assets":[],"more":1})", "no member \"more\""},
+        {R"({"version":1,"assets":[],"defaults":{"bread":{}}})",
+         "defaults has no member \"bread\""},
+        {R"({"version":1,"assets":[],"defaults":{"mesh":{"shells":1}}})", "defaults.mesh.shells"},
+        {R"({"version":1,"assets":[7]})", "assets[0] is not an object"},
+        {R"({"version":1,"assets":[{"source":"m0.obj"}]})", "assets[0] has no \"name\""},
+        {R"({"version":1,"assets":[{"name":"a"}]})", "assets[0] has no \"source\""},
+        {R"({"version":1,"assets":[)" + a + "}," + a + "}]}", "assets[1].name"},
+        {R"({"version":1,"assets":[)" + a + R"(,"kind":"bread"}]})", "assets[0].kind"},
+        {R"({"version":1,"assets":[)" + a + R"(,"kind":""}]})", "assets[0].kind"},
+        {R"({"version":1,"assets":[)" + a + R"(,"kind":1}]})", "assets[0].kind"},
+        {R"({"version":1,"assets":[)" + a + R"(,"shells":4}]})", "no member \"shells\""},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":[]}]})", "assets[0].options"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"shells":"4"}}]})",
+         "assets[0].options.shells"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"shells":129}}]})",
+         "assets[0].options.shells"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"maxSide":64}}]})",
+         "assets[0].options.maxSide"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"directions":33}}]})",
+         "assets[0].options.directions"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"threshold":2}}]})",
+         "assets[0].options.threshold"},
+        {R"({"version":1,"assets":[)" + a + R"(,"options":{"field":1}}]})",
+         "assets[0].options.field"},
+        {R"({"version":1,"assets":[{"name":"a","source":"m0.stl"}]})", "assets[0].source"},
+        {R"({"version":1,"assets":[{"name":"a","source":""}]})", "assets[0].source"},
+        {R"({"version":1,"assets":[{"name":"a","source":"m0.obj\n"}]})", "assets[0].source"},
+    };
+    for (const auto& [text, place] : cases) {
+        folder.write("manifest.json", text);
+        build(1);
+        EXPECT_NE(outcome.err.find("manifest.json: "), std::string::npos) << text.substr(0, 200);
+        EXPECT_NE(outcome.err.find(place), std::string::npos) << place << "\n" << outcome.err;
+    }
+    for (const char* name :
+         {"", "/a", "../a", "a/../b", "a//b", "a/", ".", ".penumbra/lock", "a\\b", "a\nb", ".a"}) {
+        manifest["assets"][0]["name"] = name;
+        writeManifest();
+        build(1);
+        EXPECT_NE(outcome.err.find("assets[0].name"), std::string::npos) << name << outcome.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "built"));
+}
+
+TEST_F(BuildTest, DepfilesAreMakes)
+{
+    folder.write("a b/m$#1.obj", "mtllib c:1.mtl d.mtl\n" + pyramid(1));
+    folder.write("a b/d.mtl", "newmtl red\nKd 1 0 0\n");
+    manifest["assets"].push_back({{"name", "x y/z"}, {"source", "a b/m$#1.obj"}});
+    writeManifest();
+    build();
+    const std::string root = at("");
+    EXPECT_EQ(readText(folder / "built/x y/z.glb.d"),
+              root + "built/x\\ y/z.glb: \\\n  " + root + "manifest.json \\\n  " + root +
+                  "a\\ b/m$$\\#1.obj \\\n  " + root + "a\\ b/d.mtl\n");
+}
+
+TEST_F(BuildTest, WrongUsageIsTwo)
+{
+    writePyramids(1);
+    const std::string build = "build '" + at("manifest.json") + "'";
+    for (const std::string& line : {std::string("build"), build, build + " -o",
+                                    build + " -o x --jobs 0", build + " -o x extra"})
+        EXPECT_EQ(runProgram(PENUMBRA_ASSETC, line, folder).code, 2) << line;
+    folder.write("file", "");
+    outcome = runProgram(PENUMBRA_ASSETC, build + " -o '" + at("file") + "'", folder);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("cannot create the folder"), std::string::npos) << outcome.err;
+}
+
+} // namespace penumbra
