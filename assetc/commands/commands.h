@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assetc/compile.h"
+#include "assetc/light.h"
 
 #include <filesystem>
 
@@ -20,6 +21,12 @@ struct EnvironmentArguments {
     std::filesystem::path input, output, report;
 };
 int runEnvironment(const EnvironmentArguments& arguments);
+
+struct LightArguments {
+    std::filesystem::path input, output, report;
+    LightOptions options;
+};
+int runLight(const LightArguments& arguments);
 
 int runInspect(const std::filesystem::path& file, bool json);
 int runValidate(const std::filesystem::path& file, bool json);
