@@ -68,7 +68,7 @@ Grid halved(const Grid& grid, std::uint32_t side, bool mean)
 
 class Adapter {
 public:
-    Adapter(const FieldSamples& field, float limit) : m_field(field), m_limit(limit)
+    Adapter(const FieldSamples& field, const AdaptLimit& limit) : m_field(field)
     {
         const ShadowField& head = field.head;
         m_shells = head.shellSides.size();
@@ -76,6 +76,8 @@ public:
         for (std::size_t s = 0; s < m_shells; ++s) {
             const float r = shellRadius(head, s);
             m_decay.push_back(fieldDecay(r * r));
+            m_limit.push_back(limit.threshold *
+                              (limit.radiance > 0 ? limit.radiance * m_decay.back() : 1.0f));
         }
     }
 
@@ -143,7 +145,7 @@ private:
             if (!m_field.inside.empty() && m_field.inside[first + i])
                 continue;
             const float here = difference(fine[i], nodes[i]);
-            if (!(here < m_limit))
+            if (!(here < m_limit[s]))
                 return std::nullopt;
             largest = std::max(largest, here);
         }
@@ -208,17 +210,17 @@ private:
     }
 
     const FieldSamples& m_field;
-    float m_limit;
     std::size_t m_shells = 0, m_fields = 0;
-    std::vector<float> m_decay; // [shell]
+    std::vector<float> m_decay; // [shell] g(r)
+    std::vector<float> m_limit; // [shell]
     std::vector<Shell> m_adapted;
 };
 
 } // namespace
 
-AdaptReport adaptShells(FieldSamples& field, float threshold, float unit)
+AdaptReport adaptShells(FieldSamples& field, const AdaptLimit& limit)
 {
-    Adapter adapter(field, threshold * unit);
+    Adapter adapter(field, limit);
     adapter.chooseSides();
     adapter.dropShells();
     return adapter.write(field);

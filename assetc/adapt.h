@@ -10,6 +10,13 @@ constexpr float kDefaultAdaptThreshold = 0.010f; // Tamura et al. 2006, section 
 // 1,296 bytes per shell: less would save nothing that counts, and a cell spans 45 degrees already.
 constexpr std::uint32_t kMinAdaptedSide = 9;
 
+// The error that is too large on a shell: `threshold`, in visibility; or that part of
+// `radiance` g(r), since radiance has no unit size and falls with the distance.
+struct AdaptLimit {
+    float threshold = 0;
+    float radiance = 0; // 0: visibility
+};
+
 struct AdaptReport {
     std::uint64_t bytesFixed = 0; // of the texels, if all shells had the largest side
     std::uint64_t bytes = 0;
@@ -18,7 +25,7 @@ struct AdaptReport {
 };
 
 // Halves the grid of every shell, 65 to 33, 17, 9 nodes, while the error at every node of the first
-// grid stays below `threshold`; then drops shells, from the inside on, while the error at every
+// grid stays below the limit; then drops shells, from the inside on, while the error at every
 // node of every dropped one does. A dropped shell has side 0, and is what lies between its
 // neighbours, linear in the shell's index and in the quantised values (assets/shadow_field.h).
 //
@@ -29,7 +36,6 @@ struct AdaptReport {
 // grid's nodes are nodes of the finer one; they take the value there or the mean around it, as in
 // the paper, whichever errs less. All channels and frames of a shell keep one side.
 //
-// `unit`: what the threshold is measured in; 1 for visibility.
-AdaptReport adaptShells(FieldSamples& field, float threshold, float unit = 1);
+AdaptReport adaptShells(FieldSamples& field, const AdaptLimit& limit);
 
 } // namespace penumbra

@@ -93,7 +93,7 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
         const StageTimer timer(report.times, "adapt");
         if (threshold > 0)
-            report.adapt = adaptShells(field, threshold);
+            report.adapt = adaptShells(field, {threshold});
         mesh.field = quantiseField(field);
         mesh.field->errors = measureErrors(field, *mesh.field, probes);
     }

@@ -36,9 +36,15 @@ struct EnvironmentSource {
 // too large, damaged, not 2:1, not an equirectangular map, no such channels.
 Result<EnvironmentSource> readEnvironmentSource(const std::filesystem::path& path);
 
-// The same from bytes in memory.
-Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes);
-Result<EnvironmentSource> decodeOpenExr(std::span<const std::byte> bytes);
+// The largest picture that gets memory.
+struct PictureLimit {
+    std::uint32_t width = kMaxSourceWidth, height = kMaxSourceHeight;
+};
+
+// The same from bytes in memory; any proportions.
+Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes,
+                                            PictureLimit limit = {});
+Result<EnvironmentSource> decodeOpenExr(std::span<const std::byte> bytes, PictureLimit limit = {});
 
 // Mends and filters as above. `source.pixels` may hold anything.
 Environment environmentFromSource(EnvironmentSource source);

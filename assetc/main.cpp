@@ -62,7 +62,7 @@ std::string checkCommand(const CLI::App& app, std::string_view word)
 
 int run(int argc, char** argv)
 {
-    CLI::App app("assetc: compiles meshes and environment maps into Penumbra's assets");
+    CLI::App app("assetc: compiles meshes, lights and environment maps into Penumbra's assets");
     app.require_subcommand(1);
     app.failure_message(CLI::FailureMessage::simple);
 
@@ -104,6 +104,35 @@ int run(int argc, char** argv)
     bakeCommand->add_option("--jobs", jobs, "Threads; all processors by default")
         ->check(CLI::Range(1u, 1024u));
     bakeCommand->add_option("--report", bake.report, "Write what was done as JSON");
+
+    LightArguments light;
+    CLI::App* lightCommand = app.add_subcommand(
+        "light", "Compile the description of a light (docs/light_spec.md) into a mesh asset with "
+                 "its radiance field");
+    lightCommand->add_option("SPEC", light.input, ".json")->required();
+    lightCommand->add_option("-o,--output", light.output, "OUT.glb")->required();
+    lightCommand->add_option("--shells", light.options.shells, "Shells of the field")
+        ->check(CLI::Range(2u, kMaxFieldShells))
+        ->capture_default_str();
+    lightCommand
+        ->add_option("--max-side", light.options.side, "Nodes along a shell's edge, 2^k + 1")
+        ->check(CLI::Validator(checkSide, "2^k+1"))
+        ->capture_default_str();
+    lightCommand
+        ->add_option("--directions", light.options.directions,
+                     "Rays per sample of a mesh, even; other shapes need none")
+        ->check(CLI::Range(2u, 65536u))
+        ->check(CLI::Validator(checkEven, "even"))
+        ->capture_default_str();
+    lightCommand
+        ->add_option("--threshold", light.options.adaptThreshold,
+                     "Error up to which a shell takes a coarser grid, as a part of the light at "
+                     "the brightest place; 0: all shells keep --max-side")
+        ->check(CLI::Range(0.0f, 1.0f))
+        ->capture_default_str();
+    lightCommand->add_option("--jobs", jobs, "Threads; all processors by default")
+        ->check(CLI::Range(1u, 1024u));
+    lightCommand->add_option("--report", light.report, "Write what was done as JSON");
 
     EnvironmentArguments environment;
     CLI::App* environmentCommand = app.add_subcommand(
@@ -150,6 +179,8 @@ int run(int argc, char** argv)
         bake.options.bake.field = !noField;
         return runBake(bake);
     }
+    if (*lightCommand)
+        return runLight(light);
     if (*environmentCommand)
         return runEnvironment(environment);
     if (*buildCommand)

@@ -55,7 +55,7 @@ glm::dmat3 rec709FromFile(const Imf::Header& header)
     return result;
 }
 
-Result<EnvironmentSource> read(std::span<const std::byte> bytes)
+Result<EnvironmentSource> read(std::span<const std::byte> bytes, PictureLimit limit)
 {
     MemoryStream stream(bytes);
     Imf::InputFile file(stream, 1);
@@ -65,9 +65,9 @@ Result<EnvironmentSource> read(std::span<const std::byte> bytes)
     const Imath::Box2i window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    if (width < 1 || width > kMaxSourceWidth || height < 1 || height > kMaxSourceHeight)
-        return Error{fmt::format("{} x {} pixels, the limit is {} x {}", width, height,
-                                 kMaxSourceWidth, kMaxSourceHeight)};
+    if (width < 1 || width > limit.width || height < 1 || height > limit.height)
+        return Error{fmt::format("{} x {} pixels, the limit is {} x {}", width, height, limit.width,
+                                 limit.height)};
     const Imf::ChannelList& channels = header.channels();
     const bool rgb =
         channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
@@ -105,13 +105,13 @@ Result<EnvironmentSource> read(std::span<const std::byte> bytes)
 
 } // namespace
 
-Result<EnvironmentSource> decodeOpenExr(std::span<const std::byte> bytes)
+Result<EnvironmentSource> decodeOpenExr(std::span<const std::byte> bytes, PictureLimit limit)
 {
     try {
         Imf::Header::setMaxImageSize(kMaxSourceWidth,
                                      kMaxSourceHeight); // refuses before it takes memory
         Imf::Header::setMaxTileSize(kMaxSourceWidth, kMaxSourceHeight);
-        return read(bytes);
+        return read(bytes, limit);
     } catch (const std::exception& error) {
         return Error{fmt::format("OpenEXR: {}", error.what())};
     }

@@ -101,7 +101,7 @@ bool readRuns(Reader& reader, std::span<Rgbe> row)
 
 } // namespace
 
-Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes)
+Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, PictureLimit limit)
 {
     Reader reader(bytes);
     if (!reader.line().starts_with("#?"))
@@ -115,10 +115,10 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes)
             "no size line of the form \"-Y height +X width\"; other orientations are not read"};
     if (!rgbe)
         return Error{"FORMAT is not 32-bit_rle_rgbe; convert the picture to RGBE"};
-    if (source.width < 1 || source.width > kMaxSourceWidth || source.height < 1 ||
-        source.height > kMaxSourceHeight)
+    if (source.width < 1 || source.width > limit.width || source.height < 1 ||
+        source.height > limit.height)
         return Error{fmt::format("{} x {} pixels, the limit is {} x {}", source.width,
-                                 source.height, kMaxSourceWidth, kMaxSourceHeight)};
+                                 source.height, limit.width, limit.height)};
     // A run code and its value make at most 127 pixels of one component: a cheap bound before
     // memory is taken.
     const std::size_t pixels = std::size_t{source.width} * source.height;

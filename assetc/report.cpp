@@ -91,9 +91,7 @@ std::string sidesText(const ShadowField& field)
     return sides;
 }
 
-} // namespace
-
-std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset)
+Json compileJson(const std::filesystem::path& source, const CompiledAsset& asset)
 {
     const CompileReport& report = asset.report;
     Json result = {{"source", source.string()}};
@@ -127,6 +125,42 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
     for (const StageTime& time : report.times)
         result["seconds"][time.stage] = time.seconds;
     result["warnings"] = report.warnings;
+    return result;
+}
+
+const char* shapeName(EmitterShape shape)
+{
+    switch (shape) {
+    case EmitterShape::Sphere:
+        return "sphere";
+    case EmitterShape::Rectangle:
+        return "rectangle";
+    case EmitterShape::Disc:
+        return "disc";
+    case EmitterShape::Spot:
+        return "spot";
+    case EmitterShape::Mesh:
+        return "mesh";
+    }
+    PENUMBRA_ASSERT(false, "shape {}", static_cast<int>(shape));
+    return "";
+}
+
+} // namespace
+
+std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset)
+{
+    return text(compileJson(source, asset));
+}
+
+std::string lightReport(const std::filesystem::path& source, const CompiledLight& light)
+{
+    Json result = compileJson(source, light.asset);
+    const ShadowField& field = *light.asset.mesh.field;
+    result["light"] = {{"type", shapeName(light.spec.shape)},
+                       {"power", vectorJson(light.power)},
+                       {"twoSided", light.spec.twoSided},
+                       {"reach", field.outerRadius * field.radius}};
     return text(result);
 }
 
@@ -156,6 +190,12 @@ std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool jso
                        field.kind == FieldKind::Occlusion ? "occlusion" : "radiance",
                        field.texels.size(), field.shellSides.size(), sidesText(field),
                        field.innerRadius, field.outerRadius, field.radius, field.directions);
+    if (field.kind == FieldKind::Radiance)
+        return out + fmt::format("light     {} channels, reaches {:.4g} m, steps {:.4g} {:.4g} "
+                                 "{:.4g} {:.4g} W/(m² sr) per band at the bounding sphere\n",
+                                 field.channels, field.outerRadius * field.radius,
+                                 field.bandScale[0] / 1.25f, field.bandScale[1] / 1.25f,
+                                 field.bandScale[2] / 1.25f, field.bandScale[3] / 1.25f);
     // The step of the 8 bits at the bounding sphere, r = 1: g = 1 / 1.25.
     out += fmt::format("steps     {:.4f} {:.4f} {:.4f} {:.4f} per band at the bounding sphere "
                        "(open: c0 = 3.545)\n",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assetc/compile.h"
+#include "assetc/light.h"
 #include "assets/environment.h"
 
 #include <string>
@@ -10,6 +11,9 @@ namespace penumbra {
 
 // JSON of `assetc bake --report`; ends in a line feed.
 std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset);
+
+// JSON of `assetc light --report`; ends in a line feed.
+std::string lightReport(const std::filesystem::path& source, const CompiledLight& light);
 
 // `assetc inspect`, JSON or lines of text; `fileBytes` is the size of the file.
 std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool json);

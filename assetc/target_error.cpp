@@ -58,7 +58,7 @@ TargetReport reachError(const MeshAsset& mesh, float target, BakeOptions& option
         std::uint64_t bytes = 0;
         for (;; threshold /= 2) {
             FieldSamples adapted = baked.field;
-            bytes = adaptShells(adapted, threshold).bytes;
+            bytes = adaptShells(adapted, {threshold}).bytes;
             errors = measureErrors(adapted, quantiseField(adapted), baked.probes);
             if (readersError(errors) <= target || readersError(whole) > target ||
                 threshold <= kMinThreshold)

@@ -105,7 +105,7 @@ ShadowField quantiseField(const FieldSamples& samples)
     });
     for (std::size_t l = 0; l < 4; ++l)
         field.bandScale[l] =
-            std::max(largest[l] / 127, 1e-6f); // never 0: a mesh that hides nothing still decodes
+            std::max(largest[l] / 127, 1e-30f); // never 0: a mesh that hides nothing still decodes
     field.texels.resize(samples.nodes.size() * kFieldCoefficients);
     forEachGrid([&](std::size_t first, std::size_t count, float decay) {
         for (std::size_t i = first; i < first + count; ++i)

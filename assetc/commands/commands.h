@@ -3,6 +3,7 @@
 #pragma once
 
 #include "assetc/compile.h"
+#include "assetc/light.h"
 
 #include <filesystem>
 
@@ -27,6 +28,12 @@ struct BuildArguments {
 };
 // Ends the process with 130 on SIGINT and 143 on SIGTERM; with `watch`, 0 on either.
 int runBuild(const BuildArguments& arguments);
+
+struct LightArguments {
+    std::filesystem::path input, output, report;
+    LightOptions options;
+};
+int runLight(const LightArguments& arguments);
 
 // Any kind of file, told by its content: compiled assets, sources, manifests. A source is valid if
 // it can be read.

@@ -36,7 +36,7 @@ using Sides = std::vector<std::uint16_t>;
 TEST(AdaptShells, OpenFieldNeedsTwoOfTheSmallestGrids)
 {
     FieldSamples field = openField(4, 65);
-    const AdaptReport report = adaptShells(field, 0.01f);
+    const AdaptReport report = adaptShells(field, {0.01f});
     EXPECT_EQ(field.head.shellSides, (Sides{9, 0, 0, 9}));
     EXPECT_EQ(report.worst, 0);
     EXPECT_EQ(report.shellsDropped, 2u);
@@ -53,7 +53,7 @@ TEST(AdaptShells, ThresholdIsEquationOne)
         FieldSamples field = openField(3, 17);
         c0(field, 1, 5, 5) = 0.3f;
         const float error = 0.3f * 0.282094792f * (1 - 1.0f / 16);
-        const AdaptReport report = adaptShells(field, factor * error);
+        const AdaptReport report = adaptShells(field, {factor * error});
         EXPECT_EQ(field.head.shellSides[0], 9);
         EXPECT_EQ(field.head.shellSides[1], factor < 1 ? 17 : 9);
         EXPECT_EQ(field.head.shellSides[2], 9);
@@ -67,7 +67,7 @@ TEST(AdaptShells, PeakOnAKeptNodeStillNeedsTheFineGrid)
 {
     FieldSamples field = openField(2, 33);
     c0(field, 0, 8, 8) = 1;
-    adaptShells(field, 1e-3f);
+    adaptShells(field, {1e-3f});
     EXPECT_EQ(field.head.shellSides, (Sides{33, 9}));
     EXPECT_EQ(c0(field, 0, 8, 8), 1);
 }
@@ -78,14 +78,14 @@ TEST(AdaptShells, NodesInsideTheObjectDoNotCount)
     c0(field, 0, 8, 8) = 1;
     field.inside.assign(field.nodes.size(), false);
     field.inside[8 * 33 + 8] = true;
-    adaptShells(field, 1e-3f);
+    adaptShells(field, {1e-3f});
     // The peak spreads to nodes that do count where the coarser grid keeps it.
     EXPECT_GT(field.head.shellSides[0], 9);
     field = openField(2, 33);
     c0(field, 0, 9, 9) = 0.01f;
     field.inside.assign(field.nodes.size(), false);
     field.inside[9 * 33 + 9] = true;
-    adaptShells(field, 1e-3f);
+    adaptShells(field, {1e-3f});
     EXPECT_EQ(field.head.shellSides, (Sides{9, 9}));
 }
 
@@ -100,13 +100,13 @@ TEST(AdaptShells, DropsShellsThatTheirNeighboursGive)
     for (std::size_t s = 0; s < 5; ++s)
         set(s, -0.2f - 0.1f * static_cast<float>(s));
     FieldSamples bent = field;
-    const AdaptReport report = adaptShells(field, 1e-4f);
+    const AdaptReport report = adaptShells(field, {1e-4f});
     EXPECT_EQ(field.head.shellSides, (Sides{9, 0, 0, 0, 9}));
     EXPECT_LT(report.worst, 1e-6f);
 
     for (std::size_t i = 0; i < 81; ++i)
         bent.nodes[81 * 2 + i].c[0] -= 0.1f;
-    adaptShells(bent, 1e-4f);
+    adaptShells(bent, {1e-4f});
     EXPECT_EQ(bent.head.shellSides, Sides(5, 9));
 }
 
@@ -117,7 +117,7 @@ TEST(AdaptShells, ChannelsKeepOneSide)
     field.head.channels = 3;
     field.nodes.resize(fieldTexelBytes(field.head) / kFieldCoefficients);
     field.nodes[2 * 17 * 17 + 5 * 17 + 5].c[0] = 1; // channel 1, shell 0
-    adaptShells(field, 0.01f);
+    adaptShells(field, {0.01f});
     EXPECT_EQ(field.head.shellSides, (Sides{17, 9}));
     EXPECT_EQ(field.nodes.size(), 3u * (17 * 17 + 9 * 9));
     EXPECT_EQ(field.nodes[(17 * 17 + 9 * 9) + 5 * 17 + 5].c[0], 1);

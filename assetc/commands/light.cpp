@@ -1,0 +1,46 @@
+#include "assetc/light.h"
+
+#include "assetc/commands/commands.h"
+#include "assetc/report.h"
+#include "runtime/file.h"
+
+#include <spdlog/spdlog.h>
+
+namespace penumbra {
+
+int runLight(const LightArguments& arguments)
+{
+    if (!checkOutput(arguments.input, arguments.output, ".glb"))
+        return kExitUsage;
+    const auto light = [&] {
+        Progress progress(arguments.input.stem().string());
+        return compileLight(arguments.input, arguments.options, progress);
+    }();
+    if (!light) {
+        spdlog::error("{}", light.error().message);
+        return kExitInput;
+    }
+    for (const std::string& warning : light->asset.report.warnings)
+        spdlog::warn("{}: {}", arguments.input.string(), warning);
+    const std::span<const std::byte> bytes(light->asset.bytes);
+    if (const auto written = writeFile(arguments.output, bytes); !written) {
+        spdlog::error("{}", written.error().message);
+        return kExitInput;
+    }
+    if (!arguments.report.empty())
+        if (const auto written = writeFile(arguments.report, lightReport(arguments.input, *light));
+            !written) {
+            spdlog::error("{}", written.error().message);
+            return kExitInput;
+        }
+    double seconds = 0;
+    for (const StageTime& time : light->asset.report.times)
+        seconds += time.seconds;
+    const ShadowField& field = *light->asset.mesh.field;
+    fmt::print("{}: {:.4g} {:.4g} {:.4g} W, reaches {:.3g} m, {} bytes, {:.2f} s\n",
+               arguments.output.string(), light->power.r, light->power.g, light->power.b,
+               field.outerRadius * field.radius, bytes.size(), seconds);
+    return kExitDone;
+}
+
+} // namespace penumbra

@@ -1,0 +1,171 @@
+#include "assetc/light.h"
+
+#include "assetc/import/import.h"
+#include "assetc/light/flat_emitter.h"
+#include "assetc/light/light_field.h"
+#include "assetc/light/mesh_emitter.h"
+#include "assetc/light/shape_mesh.h"
+#include "assetc/light/sphere_emitter.h"
+
+#include <chrono>
+#include <numbers>
+
+namespace penumbra {
+
+namespace {
+
+using EmitterResult = Result<std::unique_ptr<Emitter>>;
+
+// Radiance of a surface of `area` m² that emits alike in all directions of a half space.
+Result<vec3> lambertianRadiance(const LightSpec& spec, double area)
+{
+    if (spec.unit == EmissionUnit::Radiance)
+        return spec.emission;
+    const vec3 radiance = spec.emission / static_cast<float>(std::numbers::pi * area);
+    for (int c = 0; c < 3; ++c)
+        if (!(radiance[c] <= kMaxRadiance))
+            return Error{
+                fmt::format("a radiance of {} W/(m² sr), at most {}; make the light weaker "
+                            "or larger",
+                            radiance[c], kMaxRadiance)};
+    return radiance;
+}
+
+EmitterResult makeEmitter(const LightSpec& spec, const MeshAsset& mesh, std::uint32_t directions)
+{
+    if (spec.shape == EmitterShape::Sphere || spec.shape == EmitterShape::Mesh) {
+        const bool sphere = spec.shape == EmitterShape::Sphere;
+        const double area = sphere ? 4 * std::numbers::pi * spec.radius * spec.radius
+                                   : surfaceArea(mesh) * (spec.twoSided ? 2 : 1);
+        const auto radiance = lambertianRadiance(spec, area);
+        if (!radiance)
+            return radiance.error();
+        if (sphere)
+            return EmitterResult(std::make_unique<SphereEmitter>(spec.radius, *radiance));
+        return EmitterResult(std::make_unique<MeshEmitter>(
+            mesh, *radiance, MeshEmitter::Options{spec.twoSided, directions}));
+    }
+    std::optional<LightPicture> picture;
+    if (!spec.texture.empty()) {
+        auto read = readLightPicture(spec.texture);
+        if (!read)
+            return read.error();
+        picture = std::move(*read);
+    }
+    auto emitter = FlatEmitter::make(spec, picture ? &*picture : nullptr);
+    if (!emitter)
+        return emitter.error();
+    return EmitterResult(std::make_unique<FlatEmitter>(std::move(*emitter)));
+}
+
+// Error: a reach that the shells cannot have.
+Result<LightFieldOptions> fieldOptions(const LightSpec& spec, const LightOptions& options,
+                                       float radius)
+{
+    LightFieldOptions field{options.shells, options.side};
+    // Inside a sphere nothing is lit: the shells begin on its surface.
+    field.innerRadius = spec.shape == EmitterShape::Sphere ? 1.0f : 0.2f;
+    field.outerRadius = spec.reach > 0 ? spec.reach / radius : kLightOuterRadius;
+    if (field.outerRadius < kMinLightReach || field.outerRadius > kMaxLightReach)
+        return Error{
+            fmt::format("a reach of {} m; a light of bounding radius {} m reaches {} to {}",
+                        spec.reach, radius, kMinLightReach * radius, kMaxLightReach * radius)};
+    return field;
+}
+
+// Nodes of an octahedral grid are at most this far apart, degrees.
+float cellAngle(std::uint32_t side)
+{
+    return 180.0f * std::numbers::sqrt2_v<float> / static_cast<float>(side - 1);
+}
+
+} // namespace
+
+Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
+                                   Progress& progress)
+{
+    CompiledLight light;
+    MeshAsset& mesh = light.asset.mesh;
+    CompileReport& report = light.asset.report;
+    auto start = std::chrono::steady_clock::now();
+    const auto endStage = [&](const char* stage) {
+        const auto now = std::chrono::steady_clock::now();
+        report.times.push_back({stage, std::chrono::duration<double>(now - start).count()});
+        start = now;
+    };
+
+    // The description, and the mesh that people see.
+    const auto spec = readLightSpec(source);
+    if (!spec)
+        return spec.error();
+    light.spec = *spec;
+    if (spec->shape == EmitterShape::Mesh) {
+        auto imported = importMesh(spec->mesh);
+        if (!imported)
+            return imported.error();
+        mesh = std::move(imported->mesh);
+        report.warnings = std::move(imported->warnings);
+    } else {
+        mesh = makeShapeMesh(*spec);
+    }
+    mesh.name = source.stem().string().substr(0, kMaxNameBytes);
+    if (spec->shape == EmitterShape::Spot &&
+        spec->outerAngle - spec->innerAngle < cellAngle(options.side))
+        report.warnings.push_back(fmt::format(
+            "the falloff of {:.1f} degrees is narrower than a cell of the field, {:.1f} "
+            "degrees; raise --max-side",
+            spec->outerAngle - spec->innerAngle, cellAngle(options.side)));
+    endStage("import");
+
+    // The same steps as a mesh that only casts shadows.
+    const auto cleaned = cleanMesh(mesh);
+    if (!cleaned)
+        return fail(cleaned.error(), source.string());
+    report.clean = *cleaned;
+    endStage("clean");
+    report.order = orderClusters(mesh);
+    endStage("order");
+    if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
+        return fail(quantised.error(), source.string());
+    endStage("quantise");
+    if (spec->shape == EmitterShape::Mesh) {
+        BakeOptions self;
+        self.field = false;
+        mesh.selfVisibility =
+            bakeMesh(mesh.positions, mesh.normals, mesh.indices, self, progress).selfVisibility;
+    } else { // convex: it hides nothing from itself
+        SelfVisibility open;
+        open.fill(128);
+        mesh.selfVisibility.assign(mesh.positions.size(), open);
+    }
+    endStage("self-visibility");
+
+    // What the light sends to the space around it.
+    const auto emitter = makeEmitter(*spec, mesh, options.directions);
+    if (!emitter)
+        return fail(emitter.error(), source.string());
+    light.power = (*emitter)->power();
+    if (!(light.power.r + light.power.g + light.power.b > 0))
+        return Error{fmt::format("{}: the light is black; its texture has no bright pixel",
+                                 source.string())};
+    const auto fieldSettings = fieldOptions(*spec, options, (*emitter)->bounds().radius);
+    if (!fieldSettings)
+        return fail(fieldSettings.error(), source.string());
+    FieldSamples field = bakeLightField(**emitter, *fieldSettings, progress);
+    if (spec->shape == EmitterShape::Mesh)
+        field.head.directions = options.directions;
+    endStage("bake");
+    if (options.adaptThreshold > 0)
+        report.adapt = adaptLightShells(field, options.adaptThreshold);
+    mesh.field = quantiseField(field);
+    endStage("adapt");
+
+    auto bytes = encodeMeshAsset(mesh, options.encode);
+    if (!bytes)
+        return fail(bytes.error(), source.string());
+    light.asset.bytes = std::move(*bytes);
+    endStage("encode");
+    return light;
+}
+
+} // namespace penumbra

@@ -1,0 +1,180 @@
+#include "assetc/light/spec.h"
+
+#include "assetc/import/folder.h"
+#include "assets/json_reader.h"
+#include "runtime/file.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::uint64_t kMaxSpecBytes = 64 << 10;
+constexpr float kMaxEmission = 1e12f; // of power and intensity; their radiance is checked later
+
+struct ShapeMembers {
+    const char* type;
+    EmitterShape shape;
+    std::vector<std::string> members; // besides the common ones
+};
+
+const std::vector<ShapeMembers>& shapes()
+{
+    static const std::vector<ShapeMembers> kShapes = {
+        {"sphere", EmitterShape::Sphere, {"radius"}},
+        {"rectangle", EmitterShape::Rectangle, {"size", "texture", "twoSided"}},
+        {"disc", EmitterShape::Disc, {"radius", "texture", "twoSided"}},
+        {"spot", EmitterShape::Spot, {"radius", "innerAngle", "outerAngle", "intensity"}},
+        {"mesh", EmitterShape::Mesh, {"source", "twoSided"}},
+    };
+    return kShapes;
+}
+
+const ShapeMembers* findShape(const JsonReader& root)
+{
+    const std::string type = root.text("type");
+    for (const ShapeMembers& shape : shapes())
+        if (type == shape.type)
+            return &shape;
+    if (root.has("type"))
+        root.member("type").refuse("is not one of sphere, rectangle, disc, spot, mesh");
+    return nullptr;
+}
+
+void refuseUnknown(const nlohmann::json& document, const ShapeMembers& shape,
+                   const JsonReader& root)
+{
+    std::vector<std::string> allowed = {"version", "type", "radiance", "power", "reach"};
+    allowed.insert(allowed.end(), shape.members.begin(), shape.members.end());
+    for (const auto& [key, value] : document.items())
+        if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+            root.refuse(fmt::format("has the unknown member \"{}\"; a {} takes {}", key, shape.type,
+                                    fmt::join(allowed, ", ")));
+}
+
+vec3 color(const JsonReader& reader, float max)
+{
+    vec3 result{0};
+    if (reader.length(3) != 3)
+        reader.refuse("is not three numbers [r, g, b]");
+    else
+        for (int i = 0; i < 3; ++i)
+            result[i] = reader.element(static_cast<std::size_t>(i)).asNumber(0, max);
+    return result;
+}
+
+void readEmission(const JsonReader& root, LightSpec& spec)
+{
+    struct Unit {
+        const char* key;
+        EmissionUnit unit;
+        float max;
+    };
+    int given = 0;
+    for (const Unit& u : {Unit{"radiance", EmissionUnit::Radiance, kMaxRadiance},
+                          Unit{"power", EmissionUnit::Power, kMaxEmission},
+                          Unit{"intensity", EmissionUnit::Intensity, kMaxEmission}}) {
+        if (!root.has(u.key))
+            continue;
+        ++given;
+        spec.unit = u.unit;
+        spec.emission = color(root.member(u.key), u.max);
+        if (spec.emission == vec3(0))
+            root.member(u.key).refuse("is black; a light emits something");
+    }
+    if (given != 1)
+        root.refuse("needs exactly one of \"radiance\", \"power\" and, for a spot, \"intensity\"");
+}
+
+float length(const JsonReader& reader)
+{
+    return reader.asNumber(kMinEmitterSize, kMaxEmitterSize);
+}
+
+void readShape(const JsonReader& root, LightSpec& spec)
+{
+    switch (spec.shape) {
+    case EmitterShape::Sphere:
+    case EmitterShape::Disc:
+        spec.radius = length(root.member("radius"));
+        break;
+    case EmitterShape::Rectangle: {
+        const JsonReader size = root.member("size");
+        spec.size = vec2(length(size.element(0)), length(size.element(1)));
+        if (size.length(2) == 2 &&
+            std::max(spec.size.x, spec.size.y) > 1000 * std::min(spec.size.x, spec.size.y))
+            size.refuse("is more than 1000 times as long as wide");
+        break;
+    }
+    case EmitterShape::Spot:
+        spec.radius = length(root.member("radius"));
+        spec.outerAngle = root.number("outerAngle", kMinOuterAngle, kMaxOuterAngle);
+        spec.innerAngle = root.number("innerAngle", 0, kMaxOuterAngle);
+        if (spec.innerAngle > spec.outerAngle - kMinFalloffAngle)
+            root.member("innerAngle")
+                .refuse(fmt::format("is not {} degrees below outerAngle", kMinFalloffAngle));
+        break;
+    case EmitterShape::Mesh:
+        break;
+    }
+}
+
+std::filesystem::path confined(const JsonReader& reader, const std::filesystem::path& folder)
+{
+    const std::string name = reader.asText();
+    if (name.empty()) {
+        reader.refuse("names no file");
+        return {};
+    }
+    const auto file = resolveInFolder(folder, name);
+    if (!file) {
+        reader.refuse(file.error().message);
+        return {};
+    }
+    return *file;
+}
+
+} // namespace
+
+Result<LightSpec> readLightSpec(const std::filesystem::path& path)
+{
+    const auto bytes = readFile(path, kMaxSpecBytes);
+    if (!bytes)
+        return bytes.error();
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    const auto document = parseJson(text, kMaxSpecBytes);
+    if (!document)
+        return fail(document.error(), path.string());
+
+    JsonProblems problems;
+    const JsonReader root(*document, path.string() + ": light", problems);
+    if (root.count("version", 1u << 30) != 1 && problems.empty())
+        root.member("version").refuse("is not 1, the only version that this program reads");
+    LightSpec spec;
+    if (const ShapeMembers* shape = findShape(root)) {
+        refuseUnknown(*document, *shape, root);
+        spec.shape = shape->shape;
+        readShape(root, spec);
+        readEmission(root, spec);
+        if (document->contains("reach"))
+            spec.reach = root.number("reach", kMinEmitterSize, 1000 * kMaxEmitterSize);
+        if (document->contains("twoSided")) {
+            const nlohmann::json& value = (*document)["twoSided"];
+            if (!value.is_boolean())
+                root.member("twoSided").refuse("is not true or false");
+            else
+                spec.twoSided = value.get<bool>();
+        }
+        if (document->contains("texture"))
+            spec.texture = confined(root.member("texture"), path.parent_path());
+        if (spec.shape == EmitterShape::Mesh)
+            spec.mesh = confined(root.member("source"), path.parent_path());
+    }
+    if (!problems.empty())
+        return problems.front();
+    return spec;
+}
+
+} // namespace penumbra
