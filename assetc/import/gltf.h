@@ -3,7 +3,9 @@
 
 #include "assetc/import/imported_mesh.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 
 namespace penumbra {
 
@@ -13,5 +15,9 @@ namespace penumbra {
 // extensions that the file requires beyond these are refused by name. The albedo is the base colour
 // factor of the primitive with the largest area.
 Result<ImportedMesh> importGltf(const std::filesystem::path& path);
+
+// The same from the file's bytes; buffers that it names are looked for in `folder`.
+Result<ImportedMesh> importGltfBytes(std::span<const std::byte> bytes,
+                                     const std::filesystem::path& folder);
 
 } // namespace penumbra

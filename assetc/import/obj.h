@@ -12,4 +12,7 @@ namespace penumbra {
 // with its place.
 Result<ImportedMesh> importObj(const std::filesystem::path& path);
 
+// The same from the file's text; material libraries are looked for in `folder`.
+Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder);
+
 } // namespace penumbra
