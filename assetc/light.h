@@ -28,8 +28,9 @@ struct CompiledLight {
 };
 
 // Same input, options and version: same bytes, whatever the thread count. Uses the TBB arena of the
-// caller. Error: what is wrong with the spec, its texture or its mesh.
+// caller. Error: what is wrong with the spec, its texture or its mesh. `asked`, if any, gets the
+// files that the source names, of a source that is refused too.
 Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
-                                   Progress& progress);
+                                   Progress& progress, std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

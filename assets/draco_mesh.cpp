@@ -1,65 +1,11 @@
 #include "assets/draco_mesh.h"
 
-#include <array>
-#include <cstring>
-#include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
 namespace penumbra {
 
 namespace {
-
-constexpr std::array<std::uint8_t, 7> kTriangleMesh22 = {'D', 'R', 'A', 'C', 'O', 2, 2};
-
-// LEB128, as draco/core/varint_decoding.h; false where the bytes end.
-bool readVarint(std::span<const std::byte>& bytes, std::uint64_t& value)
-{
-    value = 0;
-    for (int shift = 0; shift < 35; shift += 7) {
-        if (bytes.empty())
-            return false;
-        const auto byte = std::to_integer<std::uint64_t>(bytes.front());
-        bytes = bytes.subspan(1);
-        value |= (byte & 0x7f) << shift;
-        if ((byte & 0x80) == 0)
-            return true;
-    }
-    return false;
-}
-
-// Header: "DRACO", major, minor, geometry type (1 = triangles), method (0 sequential, 1
-// edgebreaker), flags[2]; then, unless metadata comes between: sequential: triangles, vertices;
-// edgebreaker: traversal[1], vertices, triangles.
-Result<void> checkHeader(std::span<const std::byte> bytes)
-{
-    constexpr std::size_t kHeaderBytes = kTriangleMesh22.size() + 4;
-    if (bytes.size() < kHeaderBytes || std::memcmp(bytes.data(), "DRACO", 5) != 0)
-        return Error{"not a Draco payload"};
-    if (std::memcmp(bytes.data(), kTriangleMesh22.data(), kTriangleMesh22.size()) != 0)
-        return Error{"a Draco bitstream other than 2.2; re-export with a current exporter"};
-    const auto type = std::to_integer<int>(bytes[7]);
-    const auto method = std::to_integer<int>(bytes[8]);
-    if (type != 1 || method > 1)
-        return Error{"Draco geometry that is not a triangle mesh"};
-    if ((std::to_integer<int>(bytes[10]) & 0x80) != 0)
-        return Error{"Draco metadata, which glTF does not use; re-export without it"};
-
-    auto rest = bytes.subspan(kHeaderBytes);
-    if (method == 1)
-        rest = rest.subspan(std::min<std::size_t>(1, rest.size()));
-    std::uint64_t first = 0;
-    std::uint64_t second = 0;
-    if (!readVarint(rest, first) || !readVarint(rest, second))
-        return Error{"Draco payload cut off"};
-    const std::uint64_t triangles = method == 0 ? first : second;
-    const std::uint64_t vertices = method == 0 ? second : first;
-    if (triangles > kMaxMeshTriangles || vertices > kMaxMeshVertices)
-        return Error{
-            fmt::format("Draco mesh of {} vertices and {} triangles, above the limits of {} and {}",
-                        vertices, triangles, kMaxMeshVertices, kMaxMeshTriangles)};
-    return {};
-}
 
 template <class T>
 int addAttribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, draco::DataType dataType,
@@ -136,31 +82,12 @@ Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEnco
     return std::vector<std::byte>(begin, begin + buffer.size());
 }
 
-Result<DracoMesh> DracoMesh::decode(std::span<const std::byte> bytes)
+Result<DracoMesh> DracoMesh::decode(std::span<const std::byte> bytes, const DracoLimits& limits)
 {
-    if (const Result<void> header = checkHeader(bytes); !header)
-        return header.error();
-    try {
-        draco::DecoderBuffer buffer;
-        buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        draco::Decoder decoder;
-        auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-        if (!decoded.ok())
-            return Error{"Draco: " + decoded.status().error_msg_string()};
-        std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-        // Edgebreaker may add vertices at seams after the header's count.
-        if (mesh->num_points() > kMaxMeshVertices || mesh->num_faces() > kMaxMeshTriangles)
-            return Error{fmt::format("Draco mesh of {} vertices, above the limit of {}",
-                                     mesh->num_points(), kMaxMeshVertices)};
-        for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f)
-            for (const draco::PointIndex& corner : mesh->face(f))
-                if (corner.value() >= mesh->num_points())
-                    return Error{fmt::format("Draco triangle {} uses vertex {} of {}", f.value(),
-                                             corner.value(), mesh->num_points())};
-        return DracoMesh(std::move(mesh));
-    } catch (const std::exception& exception) {
-        return Error{fmt::format("Draco: {}", exception.what())};
-    }
+    auto mesh = decodeDracoMesh(bytes, limits);
+    if (!mesh)
+        return mesh.error();
+    return DracoMesh(std::move(*mesh));
 }
 
 DracoMesh::DracoMesh(std::unique_ptr<draco::Mesh> mesh) : m_mesh(std::move(mesh)) {}

@@ -1,14 +1,8 @@
-// Draco payloads, as KHR_draco_mesh_compression stores them. The counts in the payload's header are
-// read and bounded before libdraco runs, since it allocates from them.
+// Draco payloads, as KHR_draco_mesh_compression stores them.
 #pragma once
 
+#include "assets/draco_decoder.h"
 #include "assets/mesh_codec.h"
-
-#include <memory>
-
-namespace draco {
-class Mesh;
-}
 
 namespace penumbra {
 
@@ -21,9 +15,8 @@ Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEnco
 
 class DracoMesh {
 public:
-    // A triangle mesh of bitstream 2.2, by any method, of at most kMaxMeshVertices and
-    // kMaxMeshTriangles.
-    static Result<DracoMesh> decode(std::span<const std::byte> bytes);
+    static Result<DracoMesh> decode(std::span<const std::byte> bytes,
+                                    const DracoLimits& limits = {}); // see decodeDracoMesh
     DracoMesh(DracoMesh&&) noexcept;
     ~DracoMesh();
 

@@ -209,7 +209,8 @@ GeometryHead readGeometryHead(const JsonReader& root, const JsonReader& primitiv
 // Geometry out of the Draco payload, whose counts must be those of the accessors.
 Result<void> readGeometry(const GeometryHead& head, MeshAsset& mesh)
 {
-    const Result<DracoMesh> draco = DracoMesh::decode(head.payload);
+    const Result<DracoMesh> draco =
+        DracoMesh::decode(head.payload, {head.vertexCount, head.indexCount / 3});
     if (!draco)
         return draco.error();
     mesh.indices = draco->indices();

@@ -1,6 +1,7 @@
 #include "assetc/build/asset_kind.h"
 
 #include "assetc/environment.h"
+#include "assetc/light.h"
 #include "assetc/report.h"
 
 namespace penumbra {
@@ -15,28 +16,37 @@ std::uint32_t wholeNumber(const JsonReader& value, std::uint32_t min, std::uint3
     return static_cast<std::uint32_t>(number);
 }
 
+// The members that meshes and lights share.
+void readFieldOptions(const JsonReader& options, std::uint32_t& shells, std::uint32_t& maxSide,
+                      std::uint32_t& directions, float& threshold)
+{
+    if (options.has("shells"))
+        shells = wholeNumber(options.member("shells"), 2, kMaxFieldShells);
+    if (options.has("maxSide")) {
+        const JsonReader side = options.member("maxSide");
+        maxSide = wholeNumber(side, 3, kMaxFieldSide);
+        if (((maxSide - 1) & (maxSide - 2)) != 0)
+            side.refuse("is not 2^k + 1");
+    }
+    if (options.has("directions")) {
+        const JsonReader count = options.member("directions");
+        directions = wholeNumber(count, 2, 65536);
+        if (directions % 2 != 0)
+            count.refuse("is not even");
+    }
+    if (options.has("threshold"))
+        threshold = options.number("threshold", 0, 1);
+}
+
 // The members that are there, over the values that `assetc bake` has by default.
 CompileOptions readMeshOptions(const JsonReader& options)
 {
     CompileOptions result;
     BakeOptions& bake = result.bake;
-    options.refuseOthers({"shells", "maxSide", "directions", "threshold", "field"});
-    if (options.has("shells"))
-        bake.shells = wholeNumber(options.member("shells"), 2, kMaxFieldShells);
-    if (options.has("maxSide")) {
-        const JsonReader side = options.member("maxSide");
-        bake.side = wholeNumber(side, 3, kMaxFieldSide);
-        if (((bake.side - 1) & (bake.side - 2)) != 0)
-            side.refuse("is not 2^k + 1");
-    }
-    if (options.has("directions")) {
-        const JsonReader directions = options.member("directions");
-        bake.directions = wholeNumber(directions, 2, 65536);
-        if (bake.directions % 2 != 0)
-            directions.refuse("is not even");
-    }
-    if (options.has("threshold"))
-        result.adaptThreshold = options.number("threshold", 0, 1);
+    options.refuseOthers({"shells", "maxSide", "directions", "threshold", "targetError", "field"});
+    readFieldOptions(options, bake.shells, bake.side, bake.directions, result.adaptThreshold);
+    if (options.has("targetError"))
+        result.targetError = options.number("targetError", 1e-4f, 1);
     if (options.has("field"))
         bake.field = options.member("field").asFlag();
     return result;
@@ -84,12 +94,43 @@ Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, co
     return result;
 }
 
+LightOptions readLightOptions(const JsonReader& options)
+{
+    LightOptions result;
+    options.refuseOthers({"shells", "maxSide", "directions", "threshold"});
+    readFieldOptions(options, result.shells, result.side, result.directions,
+                     result.adaptThreshold);
+    return result;
+}
+
+void checkLightOptions(const JsonReader& options)
+{
+    static_cast<void>(readLightOptions(options));
+}
+
+Result<CompiledBytes> compileLightBytes(const std::filesystem::path& source,
+                                        const nlohmann::json& options,
+                                        std::vector<AskedFile>& asked)
+{
+    JsonProblems none;
+    const LightOptions parsed = readLightOptions(JsonReader(options, "options", none));
+    Progress progress(source.stem().string(), Progress::Show::Never);
+    auto light = compileLight(source, parsed, progress, &asked);
+    if (!light)
+        return light.error();
+    std::string report = lightReport(source, *light);
+    return CompiledBytes{std::move(light->asset.bytes), std::move(light->asset.report.warnings),
+                         std::move(report)};
+}
+
 constexpr const char* kMeshEndings[] = {".glb", ".gltf", ".obj"};
 constexpr const char* kEnvironmentEndings[] = {".hdr", ".exr"};
+constexpr const char* kLightEndings[] = {".json"};
 
 constexpr AssetKind kKinds[] = {
     {"mesh", ".glb", kMeshEndings, checkMeshOptions, compileMesh},
     {"environment", ".env", kEnvironmentEndings, checkEnvironmentOptions, compileEnvironment},
+    {"light", ".glb", kLightEndings, checkLightOptions, compileLightBytes},
 };
 
 } // namespace

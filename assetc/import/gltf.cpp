@@ -3,6 +3,7 @@
 #include "assetc/import/gltf_accessor.h"
 #include "assetc/import/gltf_document.h"
 #include "assetc/import/gltf_primitive.h"
+#include "runtime/file.h"
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
@@ -232,8 +233,16 @@ private:
 
 Result<ImportedMesh> importGltf(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
+    const auto bytes = readFile(path, kMaxSourceBytes);
+    return bytes ? importGltfBytes(*bytes, path.parent_path(), asked) : bytes.error();
+}
+
+Result<ImportedMesh> importGltfBytes(std::span<const std::byte> bytes,
+                                     const std::filesystem::path& folder,
+                                     std::vector<AskedFile>* asked)
+{
     ImportedMesh out;
-    const auto model = loadGltf(path, out.warnings, asked);
+    const auto model = loadGltf(bytes, folder, out.warnings, asked);
     if (!model)
         return model.error();
     SceneMerger merger(*model, out);

@@ -4,7 +4,9 @@
 #include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 
 namespace penumbra {
 
@@ -15,5 +17,10 @@ namespace penumbra {
 // factor of the primitive with the largest area.
 Result<ImportedMesh> importGltf(const std::filesystem::path& path,
                                 std::vector<AskedFile>* asked = nullptr);
+
+// The same from the file's bytes; buffers that it names are looked for in `folder`.
+Result<ImportedMesh> importGltfBytes(std::span<const std::byte> bytes,
+                                     const std::filesystem::path& folder,
+                                     std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -155,19 +155,18 @@ void dropUnread(json& document, std::vector<std::string>& warnings)
 
 } // namespace
 
-Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
-                                 std::vector<std::string>& warnings, std::vector<AskedFile>* asked)
+Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
+                                 const std::filesystem::path& folder,
+                                 std::vector<std::string>& warnings,
+                                 std::vector<AskedFile>* asked)
 {
-    const auto bytes = readFile(path, kMaxSourceBytes);
-    if (!bytes)
-        return bytes.error();
     constexpr std::array<std::byte, 4> kMagic = {std::byte{'g'}, std::byte{'l'}, std::byte{'T'},
                                                  std::byte{'F'}};
     const bool binary =
-        bytes->size() >= 4 && std::equal(kMagic.begin(), kMagic.end(), bytes->begin());
-    GlbView view{{reinterpret_cast<const char*>(bytes->data()), bytes->size()}, {}};
+        bytes.size() >= 4 && std::equal(kMagic.begin(), kMagic.end(), bytes.begin());
+    GlbView view{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
     if (binary) {
-        const auto glb = readGlb(*bytes);
+        const auto glb = readGlb(bytes);
         if (!glb)
             return glb.error();
         view = *glb;
@@ -175,7 +174,7 @@ Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
     auto document = parseJson(view.json, kMaxJsonBytes);
     if (!document)
         return document.error();
-    Source source{path.parent_path()};
+    Source source{folder};
     if (const auto extensions = checkExtensions(*document); !extensions)
         return extensions.error();
     if (const auto buffers = checkBuffers(*document, source.folder, asked); !buffers)

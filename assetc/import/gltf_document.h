@@ -7,14 +7,18 @@
 #include "assetc/import/folder.h"
 #include "assetc/import/imported_mesh.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <tiny_gltf.h>
 
 namespace penumbra {
 
 // On success every index in the model points at something, every accessor lies in its buffer and
 // nodes form a forest. Primitives with Draco geometry have no `indices`: the payload has them.
-Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
+// Buffers are looked for in `folder`.
+Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
+                                 const std::filesystem::path& folder,
                                  std::vector<std::string>& warnings,
                                  std::vector<AskedFile>* asked = nullptr);
 

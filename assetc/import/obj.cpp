@@ -224,13 +224,17 @@ Result<void> addFaces(const ObjFile& file, MeshAsset& mesh)
 Result<ImportedMesh> importObj(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
     const auto text = readText(path, kMaxSourceBytes);
-    if (!text)
-        return text.error();
-    if (const auto lines = checkLines(*text); !lines)
+    return text ? importObjText(*text, path.parent_path(), asked) : text.error();
+}
+
+Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
+                                   std::vector<AskedFile>* asked)
+{
+    if (const auto lines = checkLines(text); !lines)
         return lines.error();
     ImportedMesh out;
-    ConfinedMaterialReader materials(path.parent_path(), out.warnings, asked);
-    auto file = parse(*text, &materials, false);
+    ConfinedMaterialReader materials(folder, out.warnings, asked);
+    auto file = parse(text, &materials, false);
     if (!file)
         return file.error();
     bool allTriangles = true;
@@ -240,8 +244,8 @@ Result<ImportedMesh> importObj(const std::filesystem::path& path, std::vector<As
         // The loader's triangulation reads vertices unchecked, so it runs on a file whose indices
         // are known to be good.
         std::vector<std::string> repeated;
-        ConfinedMaterialReader again(path.parent_path(), repeated, nullptr);
-        file = parse(*text, &again, true);
+        ConfinedMaterialReader again(folder, repeated);
+        file = parse(text, &again, true);
         if (!file)
             return file.error();
         if (const auto checked = checkIndices(*file, allTriangles); !checked)

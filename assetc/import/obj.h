@@ -14,4 +14,8 @@ namespace penumbra {
 Result<ImportedMesh> importObj(const std::filesystem::path& path,
                                std::vector<AskedFile>* asked = nullptr);
 
+// The same from the file's text; material libraries are looked for in `folder`.
+Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
+                                   std::vector<AskedFile>* asked = nullptr);
+
 } // namespace penumbra

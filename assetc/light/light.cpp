@@ -82,7 +82,7 @@ float cellAngle(std::uint32_t side)
 } // namespace
 
 Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
-                                   Progress& progress)
+                                   Progress& progress, std::vector<AskedFile>* asked)
 {
     CompiledLight light;
     MeshAsset& mesh = light.asset.mesh;
@@ -95,12 +95,19 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
     };
 
     // The description, and the mesh that people see.
-    const auto spec = readLightSpec(source);
+    const auto spec = readLightSpec(source, asked);
     if (!spec)
         return spec.error();
     light.spec = *spec;
     if (spec->shape == EmitterShape::Mesh) {
-        auto imported = importMesh(spec->mesh);
+        std::vector<AskedFile> byMesh; // beside the mesh
+        auto imported = importMesh(spec->mesh, &byMesh);
+        if (asked)
+            for (const AskedFile& file : byMesh) {
+                const auto beside = spec->mesh.parent_path() / file.name;
+                asked->push_back(
+                    {beside.lexically_relative(source.parent_path()).string(), file.found});
+            }
         if (!imported)
             return imported.error();
         mesh = std::move(imported->mesh);

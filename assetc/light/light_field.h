@@ -21,9 +21,7 @@ FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& opt
 
 // adaptShells with a threshold that is relative to the light. Radiance has no unit size and falls
 // with g(r), so the error of Eq. (1) is divided by g(r) and by the largest mean radiance over g(r)
-// of any node: `threshold` is a part of the light at the brightest place, wherever the shell. The
-// rounding to 8 bits alone differs by about 0.02 at the worst node, so smaller thresholds keep most
-// shells as they are.
+// of any node: `threshold` is a part of the light at the brightest place, wherever the shell.
 AdaptReport adaptLightShells(FieldSamples& field, float threshold);
 
 } // namespace penumbra

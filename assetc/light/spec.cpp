@@ -121,14 +121,15 @@ void readShape(const JsonReader& root, LightSpec& spec)
     }
 }
 
-std::filesystem::path confined(const JsonReader& reader, const std::filesystem::path& folder)
+std::filesystem::path confined(const JsonReader& reader, const std::filesystem::path& folder,
+                               std::vector<AskedFile>* asked)
 {
     const std::string name = reader.asText();
     if (name.empty()) {
         reader.refuse("names no file");
         return {};
     }
-    const auto file = resolveInFolder(folder, name);
+    const auto file = resolveInFolder(folder, name, asked);
     if (!file) {
         reader.refuse(file.error().message);
         return {};
@@ -138,7 +139,7 @@ std::filesystem::path confined(const JsonReader& reader, const std::filesystem::
 
 } // namespace
 
-Result<LightSpec> readLightSpec(const std::filesystem::path& path)
+Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
     const auto bytes = readFile(path, kMaxSpecBytes);
     if (!bytes)
@@ -168,9 +169,9 @@ Result<LightSpec> readLightSpec(const std::filesystem::path& path)
                 spec.twoSided = value.get<bool>();
         }
         if (document->contains("texture"))
-            spec.texture = confined(root.member("texture"), path.parent_path());
+            spec.texture = confined(root.member("texture"), path.parent_path(), asked);
         if (spec.shape == EmitterShape::Mesh)
-            spec.mesh = confined(root.member("source"), path.parent_path());
+            spec.mesh = confined(root.member("source"), path.parent_path(), asked);
     }
     if (!problems.empty())
         return problems.front();

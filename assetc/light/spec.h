@@ -1,6 +1,7 @@
 // What `assetc light` reads: docs/light_spec.md.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "runtime/result.h"
 #include "shaders/shared/interop.h"
 
@@ -31,7 +32,9 @@ PENUMBRA_CONST float kMinEmitterSize = 1e-4f, kMaxEmitterSize = 1e4f; // metres
 // grid.
 PENUMBRA_CONST float kMinOuterAngle = 1, kMaxOuterAngle = 89, kMinFalloffAngle = 0.1f;
 
-// Error: the first problem of the file with its place; unknown members are problems too.
-Result<LightSpec> readLightSpec(const std::filesystem::path& path);
+// Error: the first problem of the file with its place; unknown members are problems too. `asked`, if
+// any, gets the files that the spec names.
+Result<LightSpec> readLightSpec(const std::filesystem::path& path,
+                                std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -47,6 +47,53 @@ TEST(DracoMesh, CountsAreBoundedBeforeDecoding)
     EXPECT_NE(mesh.error().message.find("limits"), std::string::npos) << mesh.error().message;
 }
 
+TEST(DracoMesh, DeclaredCountsAreLimitsToo)
+{
+    const std::uint64_t vertices = sampleMesh().positions.size();
+    const std::uint64_t triangles = sampleMesh().indices.size() / 3;
+    EXPECT_TRUE(DracoMesh::decode(payload(), {vertices, triangles}));
+    EXPECT_FALSE(DracoMesh::decode(payload(), {vertices - 1, triangles}));
+    EXPECT_FALSE(DracoMesh::decode(payload(), {vertices, triangles - 1}));
+}
+
+// Kilobytes that ask for gigabytes, which libdraco takes before it finds no data.
+TEST(DracoMesh, MemoryIsBoundedBeforeDecoding)
+{
+    using Bytes = std::initializer_list<int>;
+    const auto refusal = [](Bytes head, std::size_t zeros, Bytes list, Bytes attribute,
+                            int copies) {
+        std::string bytes("DRACO\2\2\1", 8);
+        bytes.append(head.begin(), head.end());
+        bytes.append(zeros, '\0');
+        bytes.append(list.begin(), list.end());
+        for (int i = 0; i < copies; ++i)
+            bytes.append(attribute.begin(), attribute.end());
+        bytes.append(600, '\0');
+        const auto mesh = DracoMesh::decode(std::as_bytes(std::span(bytes)));
+        return mesh ? "" : mesh.error().message;
+    };
+    // Sequential, corners as they are: 30,000 triangles (0, 0, 0) of 90,000 vertices.
+    const auto attributes = [&](Bytes list, Bytes attribute, int copies) {
+        return refusal({0, 0, 0, 0xb0, 0xea, 1, 0x90, 0xbf, 5, 1}, 90000, list, attribute, copies);
+    };
+    constexpr int kFloat = 9, kDouble = 10;
+    const std::string wide = attributes({1, 8}, {4, kDouble, 255, 0, 0}, 8);
+    EXPECT_NE(wide.find("memory"), std::string::npos) << wide;
+    const std::string many = attributes({1, 0x80, 8}, {4, kFloat, 4, 0, 0}, 1024);
+    EXPECT_NE(many.find("memory"), std::string::npos) << many;
+    const std::string endless = attributes({1, 0xff, 0xff, 0xff, 0xff, 7}, {}, 0);
+    EXPECT_NE(endless.find("memory"), std::string::npos) << endless;
+    const std::string fits = attributes({1, 1}, {4, kFloat, 4, 0, 0}, 1);
+    EXPECT_EQ(fits.find("memory"), std::string::npos) << fits;
+    // Edgebreaker, 2^22 vertices and 2^23 triangles: seams of 255 attributes; splits without end.
+    const std::string seams =
+        refusal({1, 0, 0, 2, 0x80, 0x80, 0x80, 2, 0x80, 0x80, 0x80, 4, 255, 1, 0}, 0, {}, {}, 0);
+    EXPECT_NE(seams.find("memory"), std::string::npos) << seams;
+    const std::string splits =
+        refusal({1, 0, 0, 2, 4, 2, 0, 1, 0xff, 0xff, 0xff, 0xff, 15}, 0, {}, {}, 0);
+    EXPECT_NE(splits.find("splits"), std::string::npos) << splits;
+}
+
 TEST(DracoMesh, RefusesOtherBitstreamsAndMetadata)
 {
     auto bytes = payload();

@@ -3,13 +3,9 @@
 #include "assetc/environment.h"
 
 #include "shaders/shared/environment.h"
+#include "tests/assets/environment/exr_fixture.h"
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
-#include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfTiledOutputFile.h>
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -25,63 +21,6 @@ namespace penumbra {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-std::vector<std::byte> toBytes(const std::string& text)
-{
-    std::vector<std::byte> bytes(text.size());
-    std::memcpy(bytes.data(), text.data(), text.size());
-    return bytes;
-}
-
-class StringStream final : public Imf::OStream {
-public:
-    StringStream() : OStream("memory") {}
-    void write(const char data[], int count) override { m_out.write(data, count); }
-    std::uint64_t tellp() override { return m_out.tellp(); }
-    void seekp(std::uint64_t position) override
-    {
-        m_out.seekp(static_cast<std::streamoff>(position));
-    }
-    [[nodiscard]] std::string str() const { return m_out.str(); }
-
-private:
-    std::ostringstream m_out;
-};
-
-// Channels one letter each; channel c of pixel (x, y) is 100 c + 10 y + x, in a data window that
-// starts at (3, -2).
-std::vector<std::byte> makeExr(const std::string& channels, Imf::Compression compression,
-                               bool tiled)
-{
-    constexpr int kWidth = 8, kHeight = 4;
-    const Imath::Box2i window({3, -2}, {3 + kWidth - 1, -2 + kHeight - 1});
-    Imf::Header header(window, window);
-    header.compression() = compression;
-    if (tiled)
-        header.setTileDescription(Imf::TileDescription(4, 4));
-    std::vector<float> values(channels.size() * kWidth * kHeight);
-    Imf::FrameBuffer frame;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        float* plane = values.data() + c * kWidth * kHeight;
-        for (int i = 0; i < kWidth * kHeight; ++i)
-            plane[i] = 100.0f * c + 10.0f * (i / kWidth) + i % kWidth;
-        const std::string name(1, channels[c]);
-        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, plane, window, sizeof(float),
-                                            kWidth * sizeof(float)));
-    }
-    StringStream stream;
-    if (tiled) {
-        Imf::TiledOutputFile file(stream, header);
-        file.setFrameBuffer(frame);
-        file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
-    } else {
-        Imf::OutputFile file(stream, header);
-        file.setFrameBuffer(frame);
-        file.writePixels(kHeight);
-    }
-    return toBytes(stream.str());
-}
 
 std::string hdrHeader(int width, int height)
 {
@@ -114,6 +53,40 @@ TEST(OpenExr, LuminanceAloneIsGrey)
     ASSERT_TRUE(source) << source.error().message;
     EXPECT_EQ(source->pixels[9], vec3(11));
     EXPECT_FALSE(decodeOpenExr(makeExr("RG", Imf::NO_COMPRESSION, false)));
+}
+
+// The library would take 2 GB for an attribute that says it is so long.
+TEST(OpenExr, AttributesMustLieInTheFile)
+{
+    std::vector<std::byte> bytes = makeExr("RGB", Imf::NO_COMPRESSION, false);
+    const std::string name("channels\0chlist\0", 16);
+    const auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
+                                [](std::byte b, char c) { return b == std::byte(c); });
+    ASSERT_NE(at, bytes.end());
+    at[14] = std::byte{'x'}; // a type that the library does not know and keeps as it is
+    at[16 + 3] = std::byte{0x7f};
+    const auto source = decodeOpenExr(bytes);
+    ASSERT_FALSE(source);
+    EXPECT_NE(source.error().message.find("cut in its header"), std::string::npos)
+        << source.error().message;
+}
+
+// 512 channels of a picture 16384 wide: 8 GiB for one block of 256 lines.
+TEST(OpenExr, ChannelsAreBounded)
+{
+    const Imath::Box2i window({0, 0}, {16383, 0});
+    Imf::Header header(window, window);
+    for (int i = 0; i < 512; ++i)
+        header.channels().insert(fmt::format("{}", i), Imf::Channel(Imf::FLOAT));
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    StringStream stream;
+    {
+        Imf::OutputFile file(stream, header);
+    }
+    const auto source = decodeOpenExr(toBytes(stream.str()));
+    ASSERT_FALSE(source);
+    EXPECT_NE(source.error().message.find("above the limit"), std::string::npos)
+        << source.error().message;
 }
 
 TEST(OpenExr, DamageIsAnErrorOrAPicture)
