@@ -1,9 +1,9 @@
 #include "assetc/verify.h"
 
 #include "assetc/bake/directions.h"
+#include "assetc/embree_scene.h"
 #include "shaders/shared/field.h"
 
-#include <embree3/rtcore.h>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <random>
@@ -14,39 +14,6 @@ namespace penumbra {
 namespace {
 
 constexpr std::size_t kPacket = 16;
-
-struct EmbreeScene {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-
-    explicit EmbreeScene(const MeshAsset& mesh)
-        : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device))
-    {
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* vertices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(vec3), mesh.positions.size());
-        void* indices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), mesh.indices.size() / 3);
-        PENUMBRA_ASSERT(vertices && indices, "Embree: error {}",
-                        static_cast<int>(rtcGetDeviceError(device)));
-        std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<vec3*>(vertices));
-        std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST); // no ray slips through an edge
-        rtcCommitScene(scene);
-    }
-    EmbreeScene(const EmbreeScene&) = delete;
-    EmbreeScene& operator=(const EmbreeScene&) = delete;
-    ~EmbreeScene()
-    {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-};
 
 // Visibility at a point in SH: unoccluded minus the blocked directions.
 Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
@@ -130,10 +97,10 @@ VerifyReport verifyBake(const MeshAsset& mesh, const FieldSamples& field,
     std::vector<Sample> samples;
     for (std::uint32_t i = 0; i < options.samples; ++i)
         samples.push_back(drawSample(field, random));
-    const EmbreeScene embree(mesh);
+    const EmbreeScene embree(mesh.positions, mesh.indices);
     std::vector<Sh4> traced(samples.size());
     tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-        traced[i] = traceVisibility(embree.scene, samples[i].position, directions, basis);
+        traced[i] = traceVisibility(embree.handle(), samples[i].position, directions, basis);
     });
 
     VerifyReport report{options.samples, field.head.directions};

@@ -9,8 +9,9 @@ namespace penumbra {
 
 namespace {
 
-constexpr std::uint32_t kProbes = 10240; // up to 60 % of them may lie inside the object and not count
-constexpr std::uint32_t kTiles = 4;     // along each edge of the octahedral map
+constexpr std::uint32_t kProbes =
+    10240;                          // up to 60 % of them may lie inside the object and not count
+constexpr std::uint32_t kTiles = 4; // along each edge of the octahedral map
 
 } // namespace
 

@@ -98,8 +98,7 @@ LightOptions readLightOptions(const JsonReader& options)
 {
     LightOptions result;
     options.refuseOthers({"shells", "maxSide", "directions", "threshold"});
-    readFieldOptions(options, result.shells, result.side, result.directions,
-                     result.adaptThreshold);
+    readFieldOptions(options, result.shells, result.side, result.directions, result.adaptThreshold);
     return result;
 }
 

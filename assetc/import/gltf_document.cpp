@@ -157,8 +157,7 @@ void dropUnread(json& document, std::vector<std::string>& warnings)
 
 Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
                                  const std::filesystem::path& folder,
-                                 std::vector<std::string>& warnings,
-                                 std::vector<AskedFile>* asked)
+                                 std::vector<std::string>& warnings, std::vector<AskedFile>* asked)
 {
     constexpr std::array<std::byte, 4> kMagic = {std::byte{'g'}, std::byte{'l'}, std::byte{'T'},
                                                  std::byte{'F'}};

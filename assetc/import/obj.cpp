@@ -244,7 +244,7 @@ Result<ImportedMesh> importObjText(const std::string& text, const std::filesyste
         // The loader's triangulation reads vertices unchecked, so it runs on a file whose indices
         // are known to be good.
         std::vector<std::string> repeated;
-        ConfinedMaterialReader again(folder, repeated);
+        ConfinedMaterialReader again(folder, repeated, nullptr);
         file = parse(text, &again, true);
         if (!file)
             return file.error();

@@ -50,7 +50,7 @@ float brightest(const FieldSamples& field)
 } // namespace
 
 FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& options,
-                           Progress& progress)
+                            Progress& progress)
 {
     PENUMBRA_ASSERT(options.shells >= 2 && options.side >= 3, "{} shells of side {}",
                     options.shells, options.side);

@@ -17,7 +17,7 @@ struct LightFieldOptions {
 // Samples the emitter at every node; 3 channels. Uses the TBB arena of the caller; the same bytes
 // for any thread count.
 FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& options,
-                           Progress& progress);
+                            Progress& progress);
 
 // adaptShells with a threshold that is relative to the light. Radiance has no unit size and falls
 // with g(r), so the error of Eq. (1) is divided by g(r) and by the largest mean radiance over g(r)

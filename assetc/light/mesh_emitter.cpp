@@ -6,14 +6,13 @@
 // p_2(w)), with both densities p per sr.
 #include "assetc/light/mesh_emitter.h"
 
+#include "assetc/embree_scene.h"
 #include "runtime/assert.h"
 
 #include <algorithm>
 #include <cmath>
-#include <embree3/rtcore.h>
 #include <limits>
 #include <numbers>
-#include <tbb/global_control.h>
 
 namespace penumbra {
 
@@ -52,42 +51,6 @@ mat3 frameAround(vec3 z)
 
 } // namespace
 
-struct MeshEmitter::Tracer {
-    RTCDevice device;
-    RTCScene scene;
-
-    explicit Tracer(const MeshAsset& mesh)
-        : device(rtcNewDevice(nullptr)), scene(rtcNewScene(device))
-    {
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* vertices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                    sizeof(vec3), mesh.positions.size());
-        void* indices =
-            rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), mesh.indices.size() / 3);
-        PENUMBRA_ASSERT(vertices && indices, "Embree: error {}",
-                        static_cast<int>(rtcGetDeviceError(device)));
-        std::copy(mesh.positions.begin(), mesh.positions.end(), static_cast<vec3*>(vertices));
-        std::copy(mesh.indices.begin(), mesh.indices.end(), static_cast<std::uint32_t*>(indices));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST); // no ray slips through an edge
-        // On one thread: which of two triangles a ray on their common edge hits depends on the
-        // tree.
-        const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
-        rtcCommitScene(scene);
-    }
-    Tracer(const Tracer&) = delete;
-    Tracer& operator=(const Tracer&) = delete;
-    ~Tracer()
-    {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-};
-
 // What radianceAt adds up for one place.
 struct MeshEmitter::Sum {
     vec3 position{0};
@@ -118,7 +81,8 @@ double surfaceArea(const MeshAsset& mesh)
 MeshEmitter::MeshEmitter(const MeshAsset& mesh, vec3 radiance, const Options& options)
     : m_bounds(boundingSphere(mesh.positions, 64)), m_radiance(radiance),
       m_twoSided(options.twoSided), m_area(static_cast<float>(surfaceArea(mesh))),
-      m_points(options.samples / 2), m_tracer(std::make_unique<const Tracer>(mesh))
+      m_points(options.samples / 2),
+      m_scene(std::make_unique<const EmbreeScene>(mesh.positions, mesh.indices))
 {
     PENUMBRA_ASSERT(options.samples >= 2 && !mesh.indices.empty(), "{} samples, {} indices",
                     options.samples, mesh.indices.size());
@@ -184,7 +148,7 @@ void MeshEmitter::addDirections(Sum& sum) const
             rays.ray.mask[k] = ~0u;
             rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
         }
-        rtcIntersect16(valid.data(), m_tracer->scene, &context, &rays);
+        rtcIntersect16(valid.data(), m_scene->handle(), &context, &rays);
         for (std::size_t k = 0; k < count; ++k) {
             if (rays.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID)
                 continue;
@@ -223,7 +187,7 @@ void MeshEmitter::addSurface(Sum& sum) const
             rays.tfar[k] = std::max(0.0f, candidates[k].distance - kRayGap * m_bounds.radius);
             rays.mask[k] = ~0u;
         }
-        rtcOccluded16(valid.data(), m_tracer->scene, &context, &rays);
+        rtcOccluded16(valid.data(), m_scene->handle(), &context, &rays);
         for (std::size_t k = 0; k < count; ++k)
             if (!(rays.tfar[k] < 0)) // Embree's mark of a hit
                 sum.add(candidates[k].w, candidates[k].distance, candidates[k].cosine, m_area,

@@ -8,6 +8,8 @@
 
 namespace penumbra {
 
+class EmbreeScene;
+
 class MeshEmitter final : public Emitter {
 public:
     struct Options {
@@ -26,7 +28,6 @@ public:
     [[nodiscard]] vec3 power() const override;
 
 private:
-    struct Tracer;
     struct SurfacePoint {
         vec3 position, normal; // of the triangle
     };
@@ -42,7 +43,7 @@ private:
     float m_area = 0;                   // m²
     std::vector<SurfacePoint> m_points; // [samples / 2], even by area
     std::vector<vec2> m_unitSquare;     // [samples / 2] where the directions come from
-    std::unique_ptr<const Tracer> m_tracer;
+    std::unique_ptr<const EmbreeScene> m_scene;
 };
 
 // Area of the triangles, m².

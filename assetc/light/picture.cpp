@@ -31,7 +31,7 @@ static_assert(STBI_MAX_DIMENSIONS == kMaxLightPictureSide);
 
 namespace {
 
-constexpr std::uint64_t kMaxPictureBytes = 256u << 20;
+constexpr std::uint64_t kMaxTextureBytes = 256u << 20;
 // zlib packs at most 1032:1, a JPEG spends at least a bit on each 8 x 8 block of a channel: a file
 // that promises more pixels than that is damaged, and gets no memory.
 constexpr std::uint64_t kMaxPixelsPerByte = 8 * 1032;
@@ -62,7 +62,7 @@ Result<void> checkSize(std::int64_t width, std::int64_t height, std::size_t file
 Result<LightPicture> decodeStb(std::span<const std::byte> bytes)
 {
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-    const int size = static_cast<int>(bytes.size()); // at most kMaxPictureBytes
+    const int size = static_cast<int>(bytes.size()); // at most kMaxTextureBytes
     int width = 0, height = 0, channels = 0;
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
         return Error{fmt::format("not a PNG or JPEG that can be read, at most {} x {} pixels: {}",
@@ -104,7 +104,7 @@ Result<LightPicture> fromEnvironment(Result<EnvironmentSource> source)
 
 Result<LightPicture> readLightPicture(const std::filesystem::path& path)
 {
-    const auto bytes = readFile(path, kMaxPictureBytes);
+    const auto bytes = readFile(path, kMaxTextureBytes);
     if (!bytes)
         return bytes.error();
     const auto startsWith = [&](std::string_view magic) {

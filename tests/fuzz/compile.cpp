@@ -20,7 +20,7 @@ void bake(MeshAsset& mesh)
     arena.execute([&] {
         BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);
         mesh.selfVisibility = std::move(baked.selfVisibility);
-        mesh.field = std::move(baked.field);
+        mesh.field = quantiseField(baked.field);
     });
 }
 
