@@ -12,10 +12,13 @@
 
 namespace penumbra {
 
+struct ImportedMesh;
+
 struct CompileOptions {
     BakeOptions bake;
     float adaptThreshold = kDefaultAdaptThreshold; // 0: all shells keep the bake's side
     MeshEncodeOptions encode;
+    std::uint32_t lods = 0; // levels of detail beside the full mesh, at most kMaxMeshLods
     bool verify = false;
 };
 
@@ -44,5 +47,9 @@ struct CompiledAsset {
 // caller.
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress);
+
+// The same behind the import; `place` names the mesh in errors.
+Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& place,
+                                  const CompileOptions& options, Progress& progress);
 
 } // namespace penumbra

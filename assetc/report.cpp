@@ -1,5 +1,8 @@
 #include "assetc/report.h"
 
+#include "assetc/compile_scene.h"
+#include "assetc/report_mesh.h"
+
 #include <nlohmann/json.hpp>
 
 namespace penumbra {
@@ -53,6 +56,7 @@ Json assetJson(const MeshAsset& mesh, std::size_t fileBytes)
                      {"meanRadius", quality.meanRadius},
                      {"meanConeCutoff", quality.meanCutoff},
                      {"withoutCone", quality.conelessPart}}}};
+    result.update(partsJson(mesh));
     if (mesh.field)
         result["field"] = fieldJson(*mesh.field);
     return result;
@@ -72,9 +76,7 @@ std::string sidesText(const ShadowField& field)
     return sides;
 }
 
-} // namespace
-
-std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset)
+Json compileJson(const std::filesystem::path& source, const CompiledAsset& asset)
 {
     const CompileReport& report = asset.report;
     Json result = {{"source", source.string()}};
@@ -96,6 +98,22 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
     for (const StageTime& time : report.times)
         result["seconds"][time.stage] = time.seconds;
     result["warnings"] = report.warnings;
+    return result;
+}
+
+} // namespace
+
+std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset)
+{
+    return text(compileJson(source, asset));
+}
+
+std::string sceneReport(const std::filesystem::path& source, const CompiledScene& scene)
+{
+    Json result = {{"source", source.string()}, {"assets", Json::array()}};
+    for (const SceneAsset& part : scene.assets)
+        result["assets"].push_back(compileJson(part.file, part.asset));
+    result["warnings"] = scene.warnings;
     return text(result);
 }
 
@@ -117,6 +135,7 @@ std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool jso
     out += fmt::format("material  albedo {:.3f} {:.3f} {:.3f}, gloss {:.2f} with exponent {:.4g}\n",
                        mesh.material.albedo.r, mesh.material.albedo.g, mesh.material.albedo.b,
                        mesh.material.glossFraction, mesh.material.glossExponent);
+    out += partsText(mesh);
     if (!mesh.field)
         return out + "field     none\n";
     const ShadowField& field = *mesh.field;

@@ -39,7 +39,10 @@ public:
     [[nodiscard]] JsonReader element(std::size_t index) const;
     [[nodiscard]] bool has(const char* key) const;
 
-    // The value itself: array length, whole number 0..max, finite number in [min, max], text, flag.
+    // A reader of nothing: has no members, reads as zero, reports nothing.
+    [[nodiscard]] JsonReader missing() const { return {nullptr, m_place, *m_problems}; }
+
+    // The value itself: array length, whole number 0..max, finite number in [min, max], text.
     [[nodiscard]] std::size_t length(std::size_t max) const;
     [[nodiscard]] std::uint64_t asCount(std::uint64_t max) const;
     [[nodiscard]] float asNumber(float min, float max) const;
@@ -49,6 +52,7 @@ public:
     [[nodiscard]] std::uint64_t count(const char* key, std::uint64_t max) const;
     [[nodiscard]] float number(const char* key, float min, float max) const;
     [[nodiscard]] std::string text(const char* key) const;
+    [[nodiscard]] bool flag(const char* key) const; // true or false
 
     // Records a problem at this place.
     void refuse(const std::string& what) const;

@@ -1,19 +1,26 @@
 // A glTF file as tinygltf's model, made safe in three steps: before the parser (size, depth of
-// nesting, where buffers may come from; what a mesh compiler does not need, images first, is
-// dropped unread), by the parser with file access confined to the file's folder, and after it by
+// nesting, where buffers may come from; all but buffers, accessors, meshes, nodes, skins and scenes
+// is kept from it), by the parser with file access confined to the file's folder, and after it by
 // checkModel, since tinygltf checks few of its indices.
 #pragma once
 
 #include "assetc/import/imported_mesh.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 namespace penumbra {
 
+struct GltfDocument {
+    nlohmann::json json; // the whole file but "buffers": materials, images, lights are read from it
+    tinygltf::Model model;
+    std::filesystem::path folder; // of the file
+};
+
 // On success every index in the model points at something, every accessor lies in its buffer and
 // nodes form a forest. Primitives with Draco geometry have no `indices`: the payload has them.
-Result<tinygltf::Model> loadGltf(const std::filesystem::path& path,
-                                 std::vector<std::string>& warnings);
+Result<GltfDocument> loadGltf(const std::filesystem::path& path,
+                              std::vector<std::string>& warnings);
 
 } // namespace penumbra

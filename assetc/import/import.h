@@ -1,7 +1,7 @@
 // Triangles out of a .glb, .gltf or .obj file.
 #pragma once
 
-#include "assetc/import/imported_mesh.h"
+#include "assetc/import/imported_scene.h"
 
 #include <filesystem>
 
@@ -11,5 +11,8 @@ namespace penumbra {
 // mesh may have no triangles, degenerate ones and missing normals: assetc/import/clean.h comes
 // next.
 Result<ImportedMesh> importMesh(const std::filesystem::path& path);
+
+// The same file with its hierarchy; of an OBJ file one node.
+Result<ImportedScene> importScene(const std::filesystem::path& path);
 
 } // namespace penumbra
