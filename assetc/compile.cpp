@@ -2,6 +2,7 @@
 
 #include "assetc/field_errors.h"
 #include "assetc/import/import.h"
+#include "assetc/lods.h"
 
 #include <chrono>
 
@@ -33,26 +34,36 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
                                    std::vector<AskedFile>* asked)
 {
+    std::vector<StageTime> times;
+    auto imported = [&] {
+        // Triangles of the whole file in its world space.
+        const StageTimer timer(times, "import");
+        return importMesh(source, asked);
+    }();
+    if (!imported)
+        return imported.error();
+    auto asset = compileMesh(std::move(*imported), source.string(), options, progress);
+    if (asset)
+        asset->report.times.insert(asset->report.times.begin(), times.begin(), times.end());
+    return asset;
+}
+
+Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& place,
+                                  const CompileOptions& options, Progress& progress)
+{
     CompiledAsset asset;
     CompileReport& report = asset.report;
     MeshAsset& mesh = asset.mesh;
     FieldSamples field;
     std::vector<Probe> probes;
+    mesh = std::move(imported.mesh);
+    report.warnings = std::move(imported.warnings);
     {
-        // Triangles of the whole file in its world space.
-        const StageTimer timer(report.times, "import");
-        auto imported = importMesh(source, asked);
-        if (!imported)
-            return imported.error();
-        mesh = std::move(imported->mesh);
-        report.warnings = std::move(imported->warnings);
-    }
-    {
-        // Only triangles with an area, unit normals, no vertex twice.
+        // Only triangles with an area, unit normals, no vertex twice, a submesh per material.
         const StageTimer timer(report.times, "clean");
         const auto cleaned = cleanMesh(mesh);
         if (!cleaned)
-            return fail(cleaned.error(), source.string());
+            return fail(cleaned.error(), place);
         report.clean = *cleaned;
     }
     {
@@ -65,7 +76,7 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         // one.
         const StageTimer timer(report.times, "quantise");
         if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
-            return fail(quantised.error(), source.string());
+            return fail(quantised.error(), place);
     }
     BakeOptions bake = options.bake;
     float threshold = options.adaptThreshold;
@@ -85,6 +96,11 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         field = std::move(baked.field);
         probes = std::move(baked.probes);
     }
+    if (options.lods > 0) {
+        // The same surface with fewer triangles; vertices keep their self-visibility.
+        const StageTimer timer(report.times, "lods");
+        buildLods(mesh, options.lods);
+    }
     if (options.verify) {
         const StageTimer timer(report.times, "verify");
         report.verify = verifyBake(mesh, field);
@@ -101,7 +117,7 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
         const StageTimer timer(report.times, "encode");
         auto bytes = encodeMeshAsset(mesh, options.encode);
         if (!bytes)
-            return fail(bytes.error(), source.string());
+            return fail(bytes.error(), place);
         asset.bytes = std::move(*bytes);
     }
     return asset;

@@ -14,11 +14,14 @@
 
 namespace penumbra {
 
+struct ImportedMesh;
+
 struct CompileOptions {
     BakeOptions bake;
     float adaptThreshold = kDefaultAdaptThreshold; // 0: all shells keep the bake's side
     std::optional<float> targetError; // sets shells, side, directions and threshold instead
     MeshEncodeOptions encode;
+    std::uint32_t lods = 0; // levels of detail beside the full mesh, at most kMaxMeshLods
     bool verify = false;
 };
 
@@ -49,5 +52,9 @@ struct CompiledAsset {
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
                                    std::vector<AskedFile>* asked = nullptr);
+
+// The same behind the import; `place` names the mesh in errors.
+Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& place,
+                                  const CompileOptions& options, Progress& progress);
 
 } // namespace penumbra

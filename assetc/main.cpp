@@ -72,7 +72,14 @@ int run(int argc, char** argv)
     CLI::App* bakeCommand =
         app.add_subcommand("bake", "Compile a .glb, .gltf or .obj into a mesh asset");
     bakeCommand->add_option("IN", bake.input, ".glb, .gltf or .obj")->required();
-    bakeCommand->add_option("-o,--output", bake.output, "OUT.glb")->required();
+    bakeCommand->add_option("-o,--output", bake.output, "OUT.glb, or a folder (--per-node)")
+        ->required();
+    bool perNode = false;
+    bakeCommand->add_flag("--per-node", perNode,
+                          "An asset per rigid mesh and a scene.json that places them");
+    bakeCommand->add_option("--lods", bake.options.lods, "Levels of detail, each half of the last")
+        ->check(CLI::Range(0u, kMaxMeshLods))
+        ->capture_default_str();
     bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
         ->check(CLI::Range(2u, kMaxFieldShells))
         ->capture_default_str();
@@ -177,7 +184,7 @@ int run(int argc, char** argv)
         limit.emplace(tbb::global_control::max_allowed_parallelism, jobs);
     if (*bakeCommand) {
         bake.options.bake.field = !noField;
-        return runBake(bake);
+        return perNode ? runBakeScene(bake) : runBake(bake);
     }
     if (*lightCommand)
         return runLight(light);

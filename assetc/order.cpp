@@ -16,11 +16,13 @@ constexpr float kNormalWeight = 0.2f;
 
 using Key = std::array<float, 6>;
 
+// Sorts places [begin, end), which need not begin with a cluster.
 void splitRange(std::vector<std::uint32_t>& order, const std::vector<Key>& keys, std::size_t begin,
                 std::size_t end)
 {
-    const std::size_t clusters = (end - begin + kClusterVertices - 1) / kClusterVertices;
-    if (clusters < 2)
+    const std::size_t firstCluster = begin / kClusterVertices;
+    const std::size_t clusters = (end + kClusterVertices - 1) / kClusterVertices - firstCluster;
+    if (begin == end || clusters < 2)
         return;
     Key low = keys[order[begin]];
     Key high = low;
@@ -33,7 +35,7 @@ void splitRange(std::vector<std::uint32_t>& order, const std::vector<Key>& keys,
     for (std::size_t k = 1; k < low.size(); ++k)
         if (high[k] - low[k] > high[axis] - low[axis])
             axis = k;
-    const std::size_t middle = begin + clusters / 2 * kClusterVertices;
+    const std::size_t middle = (firstCluster + clusters / 2) * kClusterVertices;
     const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
         return keys[a][axis] != keys[b][axis] ? keys[a][axis] < keys[b][axis] : a < b;
@@ -42,9 +44,19 @@ void splitRange(std::vector<std::uint32_t>& order, const std::vector<Key>& keys,
     splitRange(order, keys, middle, end);
 }
 
+// Indices of a submesh, counted from its first vertex.
+std::vector<std::uint32_t> localIndices(const MeshGeometry& mesh, const Submesh& part)
+{
+    std::vector<std::uint32_t> indices(mesh.indices.begin() + part.firstIndex,
+                                       mesh.indices.begin() + part.firstIndex + part.indexCount);
+    for (std::uint32_t& index : indices)
+        index -= part.firstVertex;
+    return indices;
+}
+
 } // namespace
 
-ClusterQuality measureClusters(const MeshAsset& mesh)
+ClusterQuality measureClusters(const MeshGeometry& mesh)
 {
     vec3 low = mesh.positions.front();
     vec3 high = low;
@@ -74,35 +86,38 @@ ClusterQuality measureClusters(const MeshAsset& mesh)
     return quality;
 }
 
-std::vector<std::uint32_t> orderByMeshlets(const MeshAsset& mesh)
+std::vector<std::uint32_t> orderByMeshlets(const MeshGeometry& mesh)
 {
     constexpr std::size_t kMaxTriangles =
         124; // a multiple of 4, as meshoptimizer asks, about twice the vertices
-    const std::size_t bound =
-        meshopt_buildMeshletsBound(mesh.indices.size(), kClusterVertices, kMaxTriangles);
-    std::vector<meshopt_Meshlet> meshlets(bound);
-    std::vector<unsigned> vertices(bound * kClusterVertices);
-    std::vector<unsigned char> corners(bound * kMaxTriangles * 3);
-    meshlets.resize(meshopt_buildMeshlets(meshlets.data(), vertices.data(), corners.data(),
-                                          mesh.indices.data(), mesh.indices.size(),
-                                          &mesh.positions[0].x, mesh.positions.size(), sizeof(vec3),
-                                          kClusterVertices, kMaxTriangles, kConeWeight));
     std::vector<std::uint32_t> order;
     std::vector<bool> placed(mesh.positions.size(), false);
-    for (const meshopt_Meshlet& meshlet : meshlets)
-        for (unsigned i = 0; i < meshlet.vertex_count; ++i) {
-            const unsigned vertex = vertices[meshlet.vertex_offset + i];
-            if (!placed[vertex])
-                order.push_back(vertex);
-            placed[vertex] = true;
-        }
+    for (const Submesh& part : submeshesOf(mesh)) {
+        const std::size_t bound =
+            meshopt_buildMeshletsBound(part.indexCount, kClusterVertices, kMaxTriangles);
+        std::vector<meshopt_Meshlet> meshlets(bound);
+        std::vector<unsigned> vertices(bound * kClusterVertices);
+        std::vector<unsigned char> corners(bound * kMaxTriangles * 3);
+        const std::vector<std::uint32_t> indices = localIndices(mesh, part);
+        meshlets.resize(meshopt_buildMeshlets(
+            meshlets.data(), vertices.data(), corners.data(), indices.data(), indices.size(),
+            &mesh.positions[part.firstVertex].x, part.vertexCount, sizeof(vec3), kClusterVertices,
+            kMaxTriangles, kConeWeight));
+        for (const meshopt_Meshlet& meshlet : meshlets)
+            for (unsigned i = 0; i < meshlet.vertex_count; ++i) {
+                const unsigned vertex = part.firstVertex + vertices[meshlet.vertex_offset + i];
+                if (!placed[vertex])
+                    order.push_back(vertex);
+                placed[vertex] = true;
+            }
+    }
     PENUMBRA_ASSERT(order.size() == mesh.positions.size(),
                     "{} of {} vertices used: the mesh is not clean", order.size(),
                     mesh.positions.size());
     return order;
 }
 
-std::vector<std::uint32_t> orderByMedianSplit(const MeshAsset& mesh)
+std::vector<std::uint32_t> orderByMedianSplit(const MeshGeometry& mesh)
 {
     vec3 low = mesh.positions.front();
     vec3 high = low;
@@ -119,29 +134,24 @@ std::vector<std::uint32_t> orderByMedianSplit(const MeshAsset& mesh)
     }
     std::vector<std::uint32_t> order(mesh.positions.size());
     std::iota(order.begin(), order.end(), 0u);
-    splitRange(order, keys, 0, order.size());
+    for (const Submesh& part : submeshesOf(mesh))
+        splitRange(order, keys, part.firstVertex, std::size_t{part.firstVertex} + part.vertexCount);
     return order;
 }
 
-void applyOrder(MeshAsset& mesh, const std::vector<std::uint32_t>& order)
+void applyOrder(MeshGeometry& mesh, const std::vector<std::uint32_t>& order)
 {
     std::vector<std::uint32_t> placeOf(order.size());
-    std::vector<vec3> positions(order.size());
-    std::vector<vec3> normals(order.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) {
+    for (std::uint32_t i = 0; i < order.size(); ++i)
         placeOf[order[i]] = i;
-        positions[i] = mesh.positions[order[i]];
-        normals[i] = mesh.normals[order[i]];
-    }
-    mesh.positions = std::move(positions);
-    mesh.normals = std::move(normals);
+    gatherVertices(mesh, order);
     for (std::uint32_t& index : mesh.indices)
         index = placeOf[index];
 }
 
-OrderReport orderClusters(MeshAsset& mesh)
+OrderReport orderClusters(MeshGeometry& mesh)
 {
-    MeshAsset split = mesh;
+    MeshGeometry split = mesh;
     applyOrder(split, orderByMedianSplit(mesh));
     applyOrder(mesh, orderByMeshlets(mesh));
     OrderReport report{"meshlets", measureClusters(mesh)};
@@ -149,10 +159,13 @@ OrderReport orderClusters(MeshAsset& mesh)
         report = {"median split", quality};
         mesh = std::move(split);
     }
-    std::vector<std::uint32_t> indices(mesh.indices.size());
-    meshopt_optimizeVertexCache(indices.data(), mesh.indices.data(), mesh.indices.size(),
-                                mesh.positions.size());
-    mesh.indices = std::move(indices);
+    for (const Submesh& part : submeshesOf(mesh)) {
+        const std::vector<std::uint32_t> old = localIndices(mesh, part);
+        std::vector<std::uint32_t> indices(old.size());
+        meshopt_optimizeVertexCache(indices.data(), old.data(), old.size(), part.vertexCount);
+        for (std::size_t i = 0; i < indices.size(); ++i)
+            mesh.indices[part.firstIndex + i] = part.firstVertex + indices[i];
+    }
     return report;
 }
 

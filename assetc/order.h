@@ -17,7 +17,7 @@ struct ClusterQuality {
     float cost = 0; // what orderClusters minimises
 };
 
-ClusterQuality measureClusters(const MeshAsset& mesh);
+ClusterQuality measureClusters(const MeshGeometry& mesh);
 
 struct OrderReport {
     std::string method; // the better one: "meshlets" or "median split"
@@ -25,15 +25,16 @@ struct OrderReport {
 };
 
 // Reorders the vertices of a clean mesh so that clusters are compact in place and normal, then the
-// triangles for the vertex cache. Deterministic. Leaves clusters and bounds as they were
+// triangles for the vertex cache, both within their submeshes: a cluster may hold the end of one
+// submesh and the beginning of the next. Deterministic. Leaves clusters and bounds as they were
 // (updateDerived).
-OrderReport orderClusters(MeshAsset& mesh);
+OrderReport orderClusters(MeshGeometry& mesh);
 
 // The two candidates: a vertex order as old index per new place.
-std::vector<std::uint32_t> orderByMeshlets(const MeshAsset& mesh);
-std::vector<std::uint32_t> orderByMedianSplit(const MeshAsset& mesh);
+std::vector<std::uint32_t> orderByMeshlets(const MeshGeometry& mesh);
+std::vector<std::uint32_t> orderByMedianSplit(const MeshGeometry& mesh);
 
 // Moves vertex order[i] to place i.
-void applyOrder(MeshAsset& mesh, const std::vector<std::uint32_t>& order);
+void applyOrder(MeshGeometry& mesh, const std::vector<std::uint32_t>& order);
 
 } // namespace penumbra

@@ -1,5 +1,8 @@
 #include "assetc/report.h"
 
+#include "assetc/compile_scene.h"
+#include "assetc/report_mesh.h"
+
 #include <nlohmann/json.hpp>
 
 namespace penumbra {
@@ -70,6 +73,7 @@ Json assetJson(const MeshAsset& mesh, std::size_t fileBytes)
                      {"meanRadius", quality.meanRadius},
                      {"meanConeCutoff", quality.meanCutoff},
                      {"withoutCone", quality.conelessPart}}}};
+    result.update(partsJson(mesh));
     if (mesh.field)
         result["field"] = fieldJson(*mesh.field);
     return result;
@@ -164,6 +168,15 @@ std::string lightReport(const std::filesystem::path& source, const CompiledLight
     return text(result);
 }
 
+std::string sceneReport(const std::filesystem::path& source, const CompiledScene& scene)
+{
+    Json result = {{"source", source.string()}, {"assets", Json::array()}};
+    for (const SceneAsset& part : scene.assets)
+        result["assets"].push_back(compileJson(part.file, part.asset));
+    result["warnings"] = scene.warnings;
+    return text(result);
+}
+
 std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool json)
 {
     if (json)
@@ -182,6 +195,7 @@ std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool jso
     out += fmt::format("material  albedo {:.3f} {:.3f} {:.3f}, gloss {:.2f} with exponent {:.4g}\n",
                        mesh.material.albedo.r, mesh.material.albedo.g, mesh.material.albedo.b,
                        mesh.material.glossFraction, mesh.material.glossExponent);
+    out += partsText(mesh);
     if (!mesh.field)
         return out + "field     none\n";
     const ShadowField& field = *mesh.field;

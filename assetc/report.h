@@ -1,7 +1,7 @@
 // What assetc says about assets: for programs as JSON, for people as text.
 #pragma once
 
-#include "assetc/compile.h"
+#include "assetc/compile_scene.h"
 #include "assetc/light.h"
 #include "assets/environment.h"
 
@@ -14,6 +14,8 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
 
 // JSON of `assetc light --report`; ends in a line feed.
 std::string lightReport(const std::filesystem::path& source, const CompiledLight& light);
+// The same of each asset of a scene.
+std::string sceneReport(const std::filesystem::path& source, const CompiledScene& scene);
 
 // `assetc inspect`, JSON or lines of text; `fileBytes` is the size of the file.
 std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool json);

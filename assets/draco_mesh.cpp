@@ -1,5 +1,6 @@
 #include "assets/draco_mesh.h"
 
+#include <algorithm>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
@@ -42,44 +43,104 @@ Result<std::vector<T>> readAttribute(const draco::Mesh& mesh, std::uint32_t id, 
     return values;
 }
 
+// 16 bits for up to 4 repeats of a texture, which is a quarter of a texel of 4096; more above.
+int texcoordBits(std::span<const vec2> texcoords)
+{
+    vec2 low = texcoords.front();
+    vec2 high = low;
+    for (const vec2 uv : texcoords) {
+        low = glm::min(low, uv);
+        high = glm::max(high, uv);
+    }
+    const float range = std::max({high.x - low.x, high.y - low.y, 4.0f});
+    return std::min(14 + static_cast<int>(std::ceil(log2(range))), 24);
+}
+
 } // namespace
 
-Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEncodeOptions& options)
+PositionLattice latticeOf(const MeshGeometry& geometry)
 {
-    const std::size_t vertexCount = mesh.positions.size();
-    PENUMBRA_ASSERT(mesh.normals.size() == vertexCount && mesh.selfVisibility.size() == vertexCount,
-                    "{} positions, {} normals, {} self-visibilities", vertexCount,
-                    mesh.normals.size(), mesh.selfVisibility.size());
+    vec3 low = geometry.positions.front();
+    vec3 high = low;
+    for (const vec3 p : geometry.positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const vec3 size = high - low;
+    const float largest = std::max({size.x, size.y, size.z});
+    return {low, largest > 0 ? largest : 1};
+}
+
+Result<std::vector<std::byte>> encodeDraco(const MeshGeometry& geometry, const Submesh& part,
+                                           const PositionLattice& lattice,
+                                           const MeshEncodeOptions& options)
+{
+    const std::size_t first = part.firstVertex;
+    const std::size_t end = first + part.vertexCount;
+    PENUMBRA_ASSERT(geometry.positions.size() >= end && geometry.normals.size() >= end &&
+                        geometry.selfVisibility.size() >= end,
+                    "{} positions, {} normals, {} self-visibilities", geometry.positions.size(),
+                    geometry.normals.size(), geometry.selfVisibility.size());
 
     draco::Mesh target;
-    target.set_num_points(static_cast<std::uint32_t>(vertexCount));
-    target.SetNumFaces(mesh.indices.size() / 3);
-    for (std::uint32_t f = 0; f < mesh.indices.size() / 3; ++f)
-        target.SetFace(draco::FaceIndex(f), {draco::PointIndex(mesh.indices[3 * f]),
-                                             draco::PointIndex(mesh.indices[3 * f + 1]),
-                                             draco::PointIndex(mesh.indices[3 * f + 2])});
+    target.set_num_points(part.vertexCount);
+    target.SetNumFaces(part.indexCount / 3);
+    const auto corner = [&](std::uint32_t i) {
+        return draco::PointIndex(geometry.indices[part.firstIndex + i] - part.firstVertex);
+    };
+    for (std::uint32_t f = 0; f < part.indexCount / 3; ++f)
+        target.SetFace(draco::FaceIndex(f), {corner(3 * f), corner(3 * f + 1), corner(3 * f + 2)});
 
     using Attribute = draco::GeometryAttribute;
-    const int position =
-        addAttribute(target, Attribute::POSITION, draco::DT_FLOAT32, 3, false, vertexCount,
-                     [&](std::uint32_t i) { return &mesh.positions[i]; });
-    const int normal = addAttribute(target, Attribute::NORMAL, draco::DT_FLOAT32, 3, false,
-                                    vertexCount, [&](std::uint32_t i) { return &mesh.normals[i]; });
-    for (std::uint32_t part = 0; part < 4; ++part)
-        addAttribute(target, Attribute::GENERIC, draco::DT_UINT8, 4, true, vertexCount,
-                     [&](std::uint32_t i) { return &mesh.selfVisibility[i][4 * part]; });
-
     draco::ExpertEncoder encoder(target);
+    const auto add = [&](DracoAttribute id, Attribute::Type type, draco::DataType dataType,
+                         int components, const auto* values) {
+        const int added =
+            addAttribute(target, type, dataType, components, dataType == draco::DT_UINT8,
+                         part.vertexCount, [&](std::uint32_t i) { return values + first + i; });
+        target.attribute(added)->set_unique_id(id);
+        return added;
+    };
+    const int position =
+        add(kDracoPosition, Attribute::POSITION, draco::DT_FLOAT32, 3, geometry.positions.data());
+    encoder.SetAttributeExplicitQuantization(position, options.positionBits, 3, &lattice.origin.x,
+                                             lattice.size);
+    const int normal =
+        add(kDracoNormal, Attribute::NORMAL, draco::DT_FLOAT32, 3, geometry.normals.data());
+    encoder.SetAttributeQuantization(normal, options.normalBits);
+    for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
+        const int added = addAttribute(
+            target, Attribute::GENERIC, draco::DT_UINT8, 4, true, part.vertexCount,
+            [&](std::uint32_t i) { return &geometry.selfVisibility[first + i][4 * quarter]; });
+        target.attribute(added)->set_unique_id(kDracoSelfVisibility0 + quarter);
+    }
+    for (const auto& [id, texcoords] : {std::pair{kDracoTexcoord0, &geometry.texcoords0},
+                                        std::pair{kDracoTexcoord1, &geometry.texcoords1}})
+        if (!texcoords->empty()) {
+            const int added =
+                add(id, Attribute::TEX_COORD, draco::DT_FLOAT32, 2, texcoords->data());
+            encoder.SetAttributeQuantization(
+                added, texcoordBits(std::span(*texcoords).subspan(first, part.vertexCount)));
+        }
+    if (!geometry.colors.empty())
+        add(kDracoColor, Attribute::COLOR, draco::DT_UINT8, 4, geometry.colors.data());
+
     encoder.SetEncodingMethod(draco::MESH_SEQUENTIAL_ENCODING);     // edgebreaker reorders vertices
     encoder.options().SetGlobalBool("compress_connectivity", true); // 25 to 29 % less
-    encoder.SetAttributeQuantization(position, options.positionBits);
-    encoder.SetAttributeQuantization(normal, options.normalBits);
     draco::EncoderBuffer buffer;
     const draco::Status status = encoder.EncodeToBuffer(&buffer);
     if (!status.ok())
         return Error{"Draco cannot encode the mesh: " + status.error_msg_string()};
     const auto* begin = reinterpret_cast<const std::byte*>(buffer.data());
     return std::vector<std::byte>(begin, begin + buffer.size());
+}
+
+Result<std::vector<std::byte>> encodeDraco(const MeshGeometry& geometry,
+                                           const MeshEncodeOptions& options)
+{
+    MeshGeometry whole = geometry;
+    whole.submeshes.clear();
+    return encodeDraco(whole, submeshesOf(whole).front(), latticeOf(whole), options);
 }
 
 Result<DracoMesh> DracoMesh::decode(std::span<const std::byte> bytes, const DracoLimits& limits)
@@ -112,6 +173,12 @@ std::vector<std::uint32_t> DracoMesh::indices() const
 Result<std::vector<float>> DracoMesh::floats(std::uint32_t id, int components) const
 {
     return readAttribute<float>(*m_mesh, id, components);
+}
+
+bool DracoMesh::normalized(std::uint32_t id) const
+{
+    const draco::PointAttribute* attribute = m_mesh->GetAttributeByUniqueId(id);
+    return attribute && attribute->normalized();
 }
 
 Result<std::vector<std::uint8_t>> DracoMesh::bytes(std::uint32_t id, int components) const

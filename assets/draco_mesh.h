@@ -6,12 +6,33 @@
 
 namespace penumbra {
 
-// Attribute ids that encodeDraco writes.
-enum DracoAttribute : std::uint32_t { kDracoPosition, kDracoNormal, kDracoSelfVisibility0 };
+// Where quantised positions lie: a cube with a corner at `origin`, cut by positionBits along each
+// edge.
+struct PositionLattice {
+    vec3 origin{0};
+    float size = 1; // metres
+};
+PositionLattice latticeOf(const MeshGeometry& geometry);
 
-// Positions, normals and self-visibility of `mesh` (all three [vertexCount]) with the sequential
+// Attribute ids that encodeDraco writes.
+enum DracoAttribute : std::uint32_t {
+    kDracoPosition,
+    kDracoNormal,
+    kDracoSelfVisibility0,
+    kDracoTexcoord0 = kDracoSelfVisibility0 + 4,
+    kDracoTexcoord1,
+    kDracoColor
+};
+
+// One submesh with every vertex array that is not empty (self-visibility is not), by the sequential
 // method, which keeps the order of vertices and triangles. Deterministic.
-Result<std::vector<std::byte>> encodeDraco(const MeshAsset& mesh, const MeshEncodeOptions& options);
+Result<std::vector<std::byte>> encodeDraco(const MeshGeometry& geometry, const Submesh& part,
+                                           const PositionLattice& lattice,
+                                           const MeshEncodeOptions& options);
+
+// All of it as one payload.
+Result<std::vector<std::byte>> encodeDraco(const MeshGeometry& geometry,
+                                           const MeshEncodeOptions& options);
 
 class DracoMesh {
 public:
@@ -28,6 +49,8 @@ public:
     // `normalized`. A missing attribute, or one with another number of components, is an Error.
     [[nodiscard]] Result<std::vector<float>> floats(std::uint32_t id, int components) const;
     [[nodiscard]] Result<std::vector<std::uint8_t>> bytes(std::uint32_t id, int components) const;
+    // Whether the payload marks the attribute as normalised; false where it has none.
+    [[nodiscard]] bool normalized(std::uint32_t id) const;
 
 private:
     explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);

@@ -180,6 +180,14 @@ std::string JsonReader::text(const char* key) const
     return member(key).asText();
 }
 
+bool JsonReader::flag(const char* key) const
+{
+    const JsonReader value = member(key);
+    if (value.m_value && !value.m_value->is_boolean())
+        value.refuse("is not true or false");
+    return value.m_value && value.m_value->is_boolean() && value.m_value->get<bool>();
+}
+
 void JsonReader::refuse(const std::string& what) const
 {
     m_problems->push_back({m_place.empty() ? what : m_place + " " + what});

@@ -41,7 +41,10 @@ public:
     [[nodiscard]] bool has(const char* key) const;
     [[nodiscard]] bool isText() const { return m_value && m_value->is_string(); }
 
-    // The value itself: array length, whole number 0..max, finite number in [min, max], text, flag.
+    // A reader of nothing: has no members, reads as zero, reports nothing.
+    [[nodiscard]] JsonReader missing() const { return {nullptr, m_place, *m_problems}; }
+
+    // The value itself: array length, whole number 0..max, finite number in [min, max], text.
     [[nodiscard]] std::size_t length(std::size_t max) const;
     [[nodiscard]] std::uint64_t asCount(std::uint64_t max) const;
     [[nodiscard]] float asNumber(float min, float max) const;
@@ -52,6 +55,7 @@ public:
     [[nodiscard]] std::uint64_t count(const char* key, std::uint64_t max) const;
     [[nodiscard]] float number(const char* key, float min, float max) const;
     [[nodiscard]] std::string text(const char* key) const;
+    [[nodiscard]] bool flag(const char* key) const; // true or false
 
     // Records a problem for each member that is none of `known`, or if this is no object. For files
     // that people write: there an unknown member is a slip of the pen.

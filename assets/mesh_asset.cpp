@@ -3,6 +3,7 @@
 #include "assets/bounding_sphere.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 
 namespace penumbra {
@@ -82,59 +83,55 @@ std::vector<MeshCluster> buildClusters(const std::vector<vec3>& positions,
     return clusters;
 }
 
+std::vector<Submesh> submeshesOf(const MeshGeometry& geometry)
+{
+    if (!geometry.submeshes.empty())
+        return geometry.submeshes;
+    return {{0, static_cast<std::uint32_t>(geometry.indices.size()), 0,
+             static_cast<std::uint32_t>(geometry.positions.size()), 0}};
+}
+
+void gatherVertices(MeshGeometry& geometry, const std::vector<std::uint32_t>& from)
+{
+    forEachVertexArray(geometry, [&](auto& array) {
+        if (array.empty())
+            return;
+        const auto old = std::move(array);
+        array.clear();
+        array.reserve(from.size());
+        for (const std::uint32_t vertex : from)
+            array.push_back(old[vertex]);
+    });
+}
+
+std::uint32_t largestMaterial(const MeshGeometry& geometry)
+{
+    std::map<std::uint32_t, double> areas;
+    for (const Submesh& part : submeshesOf(geometry))
+        for (std::uint32_t i = part.firstIndex; i + 2 < part.firstIndex + part.indexCount; i += 3) {
+            const glm::dvec3 a(geometry.positions[geometry.indices[i]]);
+            const glm::dvec3 b(geometry.positions[geometry.indices[i + 1]]);
+            const glm::dvec3 c(geometry.positions[geometry.indices[i + 2]]);
+            areas[part.material] += glm::length(glm::cross(b - a, c - a));
+        }
+    const auto largest =
+        std::max_element(areas.begin(), areas.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    return largest == areas.end() ? 0 : largest->first;
+}
+
 void updateDerived(MeshAsset& mesh)
 {
     mesh.clusters = buildClusters(mesh.positions, mesh.normals, mesh.indices);
+    for (MeshLod& lod : mesh.lods)
+        lod.clusters = buildClusters(lod.positions, lod.normals, lod.indices);
+    if (!mesh.materials.empty())
+        mesh.material = mesh.materials[largestMaterial(mesh)];
     mesh.boundsMin = mesh.boundsMax = mesh.positions.empty() ? vec3{0} : mesh.positions.front();
     for (const vec3 position : mesh.positions) {
         mesh.boundsMin = glm::min(mesh.boundsMin, position);
         mesh.boundsMax = glm::max(mesh.boundsMax, position);
     }
-}
-
-Result<void> validateMesh(const MeshAsset& mesh)
-{
-    const std::size_t vertexCount = mesh.positions.size();
-    if (vertexCount == 0 || mesh.indices.empty())
-        return Error{"mesh: no triangles"};
-    if (vertexCount > kMaxMeshVertices || mesh.indices.size() / 3 > kMaxMeshTriangles)
-        return Error{
-            fmt::format("mesh: {} vertices and {} triangles, above the limits of {} and {}",
-                        vertexCount, mesh.indices.size() / 3, kMaxMeshVertices, kMaxMeshTriangles)};
-    if (mesh.indices.size() % 3 != 0)
-        return Error{fmt::format("mesh: {} indices are not whole triangles", mesh.indices.size())};
-    if (mesh.normals.size() != vertexCount || mesh.selfVisibility.size() != vertexCount)
-        return Error{fmt::format("mesh: {} positions, {} normals, {} self-visibilities",
-                                 vertexCount, mesh.normals.size(), mesh.selfVisibility.size())};
-    for (std::size_t i = 0; i < mesh.indices.size(); ++i)
-        if (mesh.indices[i] >= vertexCount)
-            return Error{fmt::format("mesh: triangle {} uses vertex {} of {}", i / 3,
-                                     mesh.indices[i], vertexCount)};
-    for (std::size_t i = 0; i < vertexCount; ++i) {
-        const vec3 p = abs(mesh.positions[i]);
-        if (!(p.x <= kMaxCoordinate && p.y <= kMaxCoordinate && p.z <= kMaxCoordinate))
-            return Error{fmt::format("mesh: vertex {}: a coordinate beyond {} m or not finite", i,
-                                     kMaxCoordinate)};
-        const float squared = dot(mesh.normals[i], mesh.normals[i]);
-        if (!(squared > 0.98f && squared < 1.02f))
-            return Error{
-                fmt::format("mesh: vertex {}: normal of length {}", i, std::sqrt(squared))};
-    }
-    const MeshMaterial& material = mesh.material;
-    for (int channel = 0; channel < 3; ++channel)
-        if (!(material.albedo[channel] >= 0 && material.albedo[channel] <= 1))
-            return Error{
-                fmt::format("material: albedo {}, allowed 0 to 1", material.albedo[channel])};
-    if (!(material.glossFraction >= 0 && material.glossFraction <= 1))
-        return Error{
-            fmt::format("material: gloss fraction {}, allowed 0 to 1", material.glossFraction)};
-    if (!(material.glossExponent >= 0 && material.glossExponent <= kMaxGlossExponent))
-        return Error{fmt::format("material: gloss exponent {}, allowed 0 to {}",
-                                 material.glossExponent, kMaxGlossExponent)};
-    if (mesh.name.size() > kMaxNameBytes)
-        return Error{
-            fmt::format("mesh: name of {} bytes, at most {}", mesh.name.size(), kMaxNameBytes)};
-    return mesh.field ? validateField(*mesh.field) : Result<void>{};
 }
 
 } // namespace penumbra

@@ -1,21 +1,19 @@
 #include "assets/checksum.h"
-#include "assets/draco_mesh.h"
 #include "assets/field_payload.h"
+#include "assets/geometry_codec.h"
 #include "assets/glb.h"
-#include "assets/json_reader.h"
+#include "assets/light_json.h"
+#include "assets/material_json.h"
 #include "assets/mesh_codec.h"
 #include "assets/mesh_format.h"
 
+#include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <limits>
 
 namespace penumbra {
 
 namespace {
-
-constexpr std::size_t kMaxJsonBytes = 1 << 20; // our own files have less than 4 KiB
-constexpr std::size_t kMaxViews = 1024;
 
 vec3 readVec3(const JsonReader& array)
 {
@@ -24,30 +22,6 @@ vec3 readVec3(const JsonReader& array)
         value[axis] =
             array.element(static_cast<std::size_t>(axis)).asNumber(-kMaxCoordinate, kMaxCoordinate);
     return value;
-}
-
-// The bytes of a bufferView, which must lie in the BIN chunk.
-std::span<const std::byte> readView(const JsonReader& root, std::uint64_t index,
-                                    std::span<const std::byte> bin)
-{
-    const JsonReader views = root.member("bufferViews");
-    if (index >= views.length(kMaxViews)) {
-        views.refuse(fmt::format("has no element {}", index));
-        return {};
-    }
-    const JsonReader view = views.element(index);
-    if (view.count("buffer", kMaxViews) != 0)
-        view.refuse("is not in buffer 0, the BIN chunk");
-    const std::uint64_t limit = std::min<std::uint64_t>(
-        bin.size(), root.member("buffers").element(0).count(
-                        "byteLength", std::numeric_limits<std::uint32_t>::max()));
-    const std::uint64_t offset = view.has("byteOffset") ? view.count("byteOffset", limit) : 0;
-    const std::uint64_t length = view.count("byteLength", limit);
-    if (length > limit - std::min(offset, limit)) {
-        view.refuse(fmt::format("ends at byte {} of {}", offset + length, limit));
-        return {};
-    }
-    return bin.subspan(offset, length);
 }
 
 void checkVersion(const JsonReader& extension)
@@ -114,26 +88,13 @@ ShadowField readFieldHead(const JsonReader& extension)
     return field;
 }
 
-// Since version 1.1. Before decoding: a decoder reads sense into much that is damaged.
-void checkPayload(const JsonReader& extension, const char* member,
-                  std::span<const std::byte> payload)
-{
-    if (!extension.has(member))
-        return;
-    const JsonReader stated = extension.member(member);
-    if (stated.asText() != checksumText(payload) && stated.isText())
-        extension.refuse(fmt::format("has a {} that its data does not: the file is damaged, or "
-                                     "another program rewrote it; compile it again",
-                                     member));
-}
-
 std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& extension,
                                      std::span<const std::byte> bin, JsonProblems& problems)
 {
     const std::size_t before = problems.size();
     ShadowField field = readFieldHead(extension);
     const std::uint64_t byteLength = extension.count("byteLength", kMaxFieldBytes);
-    const auto payload = readView(root, extension.count("bufferView", kMaxViews), bin);
+    const auto payload = readView(root, extension.count("bufferView", kMaxGltfElements), bin);
     if (problems.size() == before)
         checkPayload(extension, "fieldChecksum", payload);
     if (problems.size() > before)
@@ -156,91 +117,28 @@ std::optional<ShadowField> readField(const JsonReader& root, const JsonReader& e
     return field;
 }
 
-MeshMaterial readMaterial(const JsonReader& root, const JsonReader& primitive)
+// The full mesh, and since version 1.2 the meshes behind it as its LODs.
+void readLevels(const JsonReader& root, const JsonReader& source, std::span<const std::byte> bin,
+                MeshAsset& mesh, JsonProblems& problems)
 {
-    MeshMaterial material;
-    if (!primitive.has("material"))
-        return material;
-    const JsonReader source =
-        root.member("materials").element(primitive.count("material", kMaxViews));
-    const JsonReader base = source.member("pbrMetallicRoughness").member("baseColorFactor");
-    for (int channel = 0; channel < 3; ++channel)
-        material.albedo[channel] = base.element(static_cast<std::size_t>(channel)).asNumber(0, 1);
-    if (source.has("extensions") && source.member("extensions").has(kFieldExtension)) {
-        const JsonReader gloss = source.member("extensions").member(kFieldExtension);
-        material.glossFraction = gloss.number("glossFraction", 0, 1);
-        material.glossExponent = gloss.number("glossExponent", 0, kMaxGlossExponent);
+    const auto materialCount = static_cast<std::uint32_t>(mesh.materials.size());
+    static_cast<MeshGeometry&>(mesh) = decodePrimitives(root, source, materialCount, bin, problems);
+    const JsonReader extension = source.member("extensions").member(kFieldExtension);
+    const std::size_t lods =
+        extension.has("lodErrors") ? extension.member("lodErrors").length(kMaxMeshLods) : 0;
+    for (std::size_t i = 0; i < lods && problems.empty(); ++i) {
+        MeshLod lod;
+        lod.error = extension.member("lodErrors").element(i).asNumber(0, kMaxCoordinate);
+        static_cast<MeshGeometry&>(lod) = decodePrimitives(
+            root, root.member("meshes").element(i + 1), materialCount, bin, problems);
+        mesh.lods.push_back(std::move(lod));
     }
-    return material;
-}
-
-// Where the geometry lies: read from the JSON, trusted by nobody.
-struct GeometryHead {
-    std::span<const std::byte> payload;
-    std::uint64_t vertexCount = 0, indexCount = 0; // of the accessors
-    std::uint32_t position = 0, normal = 0;        // Draco attribute ids
-    std::array<std::uint32_t, 4> selfVisibility{};
-};
-
-GeometryHead readGeometryHead(const JsonReader& root, const JsonReader& primitive,
-                              std::span<const std::byte> bin)
-{
-    const JsonReader compressed = primitive.member("extensions").member(kDracoExtension);
-    const JsonReader ids = compressed.member("attributes");
-    const auto idOf = [&](const char* name) {
-        return static_cast<std::uint32_t>(ids.count(name, kMaxViews));
+    const auto usesDefault = [&](const MeshGeometry& geometry) {
+        return std::any_of(geometry.submeshes.begin(), geometry.submeshes.end(),
+                           [&](const Submesh& part) { return part.material == materialCount; });
     };
-    const auto countOf = [&](const JsonReader& accessor) {
-        return root.member("accessors")
-            .element(accessor.asCount(kMaxViews))
-            .count("count", kMaxMeshTriangles * 3);
-    };
-    GeometryHead head;
-    head.payload = readView(root, compressed.count("bufferView", kMaxViews), bin);
-    head.vertexCount = countOf(primitive.member("attributes").member("POSITION"));
-    head.indexCount = countOf(primitive.member("indices"));
-    head.position = idOf("POSITION");
-    head.normal = idOf("NORMAL");
-    for (std::size_t part = 0; part < 4; ++part)
-        head.selfVisibility[part] = idOf(kSelfVisibilityNames[part]);
-    return head;
-}
-
-// Geometry out of the Draco payload, whose counts must be those of the accessors.
-Result<void> readGeometry(const GeometryHead& head, MeshAsset& mesh)
-{
-    const Result<DracoMesh> draco =
-        DracoMesh::decode(head.payload, {head.vertexCount, head.indexCount / 3});
-    if (!draco)
-        return draco.error();
-    mesh.indices = draco->indices();
-    const std::size_t vertexCount = draco->vertexCount();
-    if (vertexCount != head.vertexCount || mesh.indices.size() != head.indexCount)
-        return Error{
-            fmt::format("Draco payload has {} vertices and {} indices, its accessors {} and {}",
-                        vertexCount, mesh.indices.size(), head.vertexCount, head.indexCount)};
-    const auto positions = draco->floats(head.position, 3);
-    if (!positions)
-        return positions.error();
-    const auto normals = draco->floats(head.normal, 3);
-    if (!normals)
-        return normals.error();
-    mesh.positions.resize(vertexCount);
-    mesh.normals.resize(vertexCount);
-    std::memcpy(mesh.positions.data(), positions->data(), positions->size() * sizeof(float));
-    for (std::size_t i = 0; i < vertexCount;
-         ++i) // a zero normal becomes NaN, which validateMesh refuses
-        mesh.normals[i] =
-            normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
-    mesh.selfVisibility.resize(vertexCount);
-    for (std::size_t part = 0; part < 4; ++part) {
-        const auto quarter = draco->bytes(head.selfVisibility[part], 4);
-        if (!quarter)
-            return quarter.error();
-        for (std::size_t i = 0; i < vertexCount; ++i)
-            std::memcpy(&mesh.selfVisibility[i][4 * part], &(*quarter)[4 * i], 4);
-    }
-    return {};
+    if (usesDefault(mesh) || std::any_of(mesh.lods.begin(), mesh.lods.end(), usesDefault))
+        mesh.materials.push_back({});
 }
 
 void readDocument(const nlohmann::json& document, std::span<const std::byte> bin, MeshAsset& mesh,
@@ -263,15 +161,15 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
                                      kSelfVisibilityScale));
 
     mesh.name = source.has("name") ? source.text("name") : "";
-    const JsonReader primitive = source.member("primitives").element(0);
-    mesh.material = readMaterial(root, primitive);
+    MaterialReading strict;
+    mesh.materials = readMaterials(root, strict, problems);
+    readLevels(root, source, bin, mesh, problems);
     const std::size_t before = problems.size();
-    const GeometryHead head = readGeometryHead(root, primitive, bin);
-    if (problems.size() == before)
-        checkPayload(extension, "geometryChecksum", head.payload);
-    if (problems.size() == before)
-        if (const auto geometry = readGeometry(head, mesh); !geometry)
-            problems.push_back(geometry.error());
+    mesh.images = readImages(root, bin);
+    if (problems.size() == before && extension.has("imageChecksum") &&
+        extension.text("imageChecksum") != imageChecksum(mesh.images))
+        extension.refuse("has an imageChecksum that its images do not: the file is damaged");
+    mesh.lights = readPlacedLights(root);
     if (extension.has("bufferView"))
         mesh.field = readField(root, extension, bin, problems);
 }
@@ -290,7 +188,7 @@ std::optional<MeshAsset> decode(std::span<const std::byte> bytes, JsonProblems& 
         const Result<GlbView> glb = readGlb(bytes);
         if (!glb)
             return refuse(glb.error());
-        const auto document = parseJson(glb->json, kMaxJsonBytes);
+        const auto document = parseJson(glb->json, kMaxMeshJsonBytes);
         if (!document)
             return refuse(document.error());
         std::optional<MeshAsset> mesh(std::in_place);
@@ -307,6 +205,18 @@ std::optional<MeshAsset> decode(std::span<const std::byte> bytes, JsonProblems& 
 }
 
 } // namespace
+
+void checkPayload(const JsonReader& extension, const char* member,
+                  std::span<const std::byte> payload)
+{
+    if (!extension.has(member))
+        return;
+    const JsonReader stated = extension.member(member);
+    if (stated.asText() != checksumText(payload) && stated.isText())
+        extension.refuse(fmt::format("has a {} that its data does not: the file is damaged, or "
+                                     "another program rewrote it; compile it again",
+                                     member));
+}
 
 Result<MeshAsset> decodeMeshAsset(std::span<const std::byte> bytes)
 {

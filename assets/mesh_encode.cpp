@@ -1,7 +1,10 @@
 #include "assets/checksum.h"
 #include "assets/draco_mesh.h"
 #include "assets/field_payload.h"
+#include "assets/geometry_codec.h"
 #include "assets/glb.h"
+#include "assets/light_json.h"
+#include "assets/material_json.h"
 #include "assets/mesh_codec.h"
 #include "assets/mesh_format.h"
 
@@ -14,39 +17,22 @@ namespace {
 
 using nlohmann::json;
 
-// glTF enumerators
-constexpr int kUnsignedByte = 5121, kUnsignedInt = 5125, kFloat = 5126;
-
 json vectorJson(vec3 v)
 {
     return {v.x, v.y, v.z};
 }
 
-// A bufferView over `part`, appended to `bin` at a multiple of 4.
-int addBufferView(json& document, std::vector<std::byte>& bin, std::span<const std::byte> part)
+// The materials, or the one that a mesh without any stands for.
+std::vector<SurfaceMaterial> materialsOf(const MeshAsset& mesh)
 {
-    bin.resize((bin.size() + 3) & ~std::size_t{3});
-    document["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", part.size()}});
-    bin.insert(bin.end(), part.begin(), part.end());
-    return static_cast<int>(document["bufferViews"].size()) - 1;
-}
-
-json materialJson(const MeshMaterial& material)
-{
+    if (!mesh.materials.empty())
+        return mesh.materials;
+    SurfaceMaterial material{mesh.material};
     // Other viewers see the Phong lobe as GGX of equal width: alpha² = 2 / (exponent + 2) (Walter
     // et al. 2007, section 5.2), roughness = sqrt(alpha).
-    const float roughness =
-        material.glossFraction > 0 ? std::pow(2 / (material.glossExponent + 2), 0.25f) : 1.0f;
-    json result = {
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {material.albedo.r, material.albedo.g, material.albedo.b, 1}},
-          {"metallicFactor", 0},
-          {"roughnessFactor", roughness}}}};
     if (material.glossFraction > 0)
-        result["extensions"][kFieldExtension] = {{"glossFraction", material.glossFraction},
-                                                 {"glossExponent", material.glossExponent}};
-    return result;
+        material.roughness = std::pow(2 / (material.glossExponent + 2), 0.25f);
+    return {material};
 }
 
 json errorsJson(const FieldErrors& errors)
@@ -83,36 +69,6 @@ json fieldJson(const ShadowField& field)
     return result;
 }
 
-// Accessors of the Draco attributes, which have no bufferView of their own, and the primitive that
-// names them.
-json primitiveJson(json& document, const MeshAsset& shipped, int dracoView)
-{
-    const auto addAccessor = [&](int componentType, const char* type, std::size_t count) {
-        document["accessors"].push_back(
-            {{"componentType", componentType}, {"type", type}, {"count", count}});
-        return static_cast<int>(document["accessors"].size()) - 1;
-    };
-    const std::size_t vertexCount = shipped.positions.size();
-    json attributes;
-    json dracoAttributes = {{"POSITION", kDracoPosition}, {"NORMAL", kDracoNormal}};
-    attributes["POSITION"] = addAccessor(kFloat, "VEC3", vertexCount);
-    document["accessors"].back()["min"] = vectorJson(shipped.boundsMin);
-    document["accessors"].back()["max"] = vectorJson(shipped.boundsMax);
-    attributes["NORMAL"] = addAccessor(kFloat, "VEC3", vertexCount);
-    for (std::uint32_t part = 0; part < 4; ++part) {
-        attributes[kSelfVisibilityNames[part]] = addAccessor(kUnsignedByte, "VEC4", vertexCount);
-        document["accessors"].back()["normalized"] = true;
-        dracoAttributes[kSelfVisibilityNames[part]] = kDracoSelfVisibility0 + part;
-    }
-    const int indices = addAccessor(kUnsignedInt, "SCALAR", shipped.indices.size());
-    return {{"attributes", attributes},
-            {"indices", indices},
-            {"material", 0},
-            {"mode", 4},
-            {"extensions",
-             {{kDracoExtension, {{"bufferView", dracoView}, {"attributes", dracoAttributes}}}}}};
-}
-
 Result<void> checkOptions(const MeshEncodeOptions& options)
 {
     if (options.positionBits < 8 || options.positionBits > 24 || options.normalBits < 6 ||
@@ -123,21 +79,42 @@ Result<void> checkOptions(const MeshEncodeOptions& options)
     return {};
 }
 
-// Positions and normals as a reader will see them.
-Result<void> readBack(MeshAsset& mesh, std::span<const std::byte> draco)
+// One level of detail: a mesh, and a node that shows it.
+Result<void> addLevel(const MeshGeometry& geometry, const std::string& name,
+                      const PositionLattice& lattice, const MeshEncodeOptions& options,
+                      json extension, GltfWriter& out)
 {
-    const Result<DracoMesh> decoded = DracoMesh::decode(draco);
-    if (!decoded)
-        return decoded.error();
-    const auto positions = decoded->floats(kDracoPosition, 3);
-    const auto normals = decoded->floats(kDracoNormal, 3);
-    PENUMBRA_ASSERT(positions && normals && positions->size() == 3 * mesh.positions.size(),
-                    "Draco does not read what it wrote");
-    std::memcpy(mesh.positions.data(), positions->data(), positions->size() * sizeof(float));
-    for (std::size_t i = 0; i < mesh.normals.size(); ++i)
-        mesh.normals[i] =
-            normalize(vec3{(*normals)[3 * i], (*normals)[3 * i + 1], (*normals)[3 * i + 2]});
-    updateDerived(mesh);
+    auto encoded = encodePrimitives(geometry, lattice, options, out);
+    if (!encoded)
+        return encoded.error();
+    extension["version"] = kFormatVersion;
+    extension["selfVisibilityScale"] = kSelfVisibilityScale;
+    extension["geometryChecksum"] = encoded->checksum;
+    out.document["nodes"].push_back({{"mesh", out.document["meshes"].size()}, {"name", name}});
+    out.document["meshes"].push_back({{"name", name},
+                                      {"primitives", std::move(encoded->primitives)},
+                                      {"extensions", {{kFieldExtension, std::move(extension)}}}});
+    return {};
+}
+
+// The levels behind the first, as MSFT_lod links them.
+Result<void> addLods(const MeshAsset& mesh, const PositionLattice& lattice,
+                     const MeshEncodeOptions& options, GltfWriter& out)
+{
+    if (mesh.lods.empty())
+        return {};
+    json errors;
+    json ids;
+    for (const MeshLod& lod : mesh.lods) {
+        ids.push_back(out.document["nodes"].size());
+        errors.push_back(lod.error);
+        if (const auto added = addLevel(lod, mesh.name, lattice, options, json::object(), out);
+            !added)
+            return added;
+    }
+    out.useExtension(kLodExtension);
+    out.document["nodes"][0]["extensions"][kLodExtension]["ids"] = ids;
+    out.document["meshes"][0]["extensions"][kFieldExtension]["lodErrors"] = errors;
     return {};
 }
 
@@ -150,12 +127,13 @@ Result<void> quantizeMesh(MeshAsset& mesh, const MeshEncodeOptions& options)
     const bool baked = !mesh.selfVisibility.empty();
     if (!baked)
         mesh.selfVisibility.resize(mesh.positions.size());
-    const auto draco = encodeDraco(mesh, options);
+    const Result<void> quantised = quantizeGeometry(mesh, options);
     if (!baked)
         mesh.selfVisibility.clear();
-    if (!draco)
-        return draco.error();
-    return readBack(mesh, *draco);
+    if (!quantised)
+        return quantised;
+    updateDerived(mesh);
+    return {};
 }
 
 Result<std::vector<std::byte>> encodeMeshAsset(const MeshAsset& mesh,
@@ -165,41 +143,40 @@ Result<std::vector<std::byte>> encodeMeshAsset(const MeshAsset& mesh,
         return checked.error();
     if (const auto valid = validateMesh(mesh); !valid)
         return valid.error();
-    const auto draco = encodeDraco(mesh, options);
-    if (!draco)
-        return draco.error();
-    MeshAsset shipped{
-        .positions = mesh.positions, .normals = mesh.normals, .indices = mesh.indices};
-    if (const auto read = readBack(shipped, *draco); !read)
-        return read.error();
 
-    json document;
-    std::vector<std::byte> bin;
+    GltfWriter out;
+    json& document = out.document;
     document["asset"] = {{"version", "2.0"}, {"generator", "Penumbra assetc"}};
     document["extensionsUsed"] = {kDracoExtension, kFieldExtension};
     document["extensionsRequired"] = json::array({kDracoExtension});
     document["scene"] = 0;
     document["scenes"] = json::array({{{"nodes", {0}}}});
-    document["nodes"] = json::array({{{"mesh", 0}, {"name", mesh.name}}});
-    document["materials"] = json::array({materialJson(mesh.material)});
 
-    const int dracoView = addBufferView(document, bin, *draco);
-    json extension = mesh.field ? fieldJson(*mesh.field) : json::object();
-    extension["version"] = kFormatVersion;
-    extension["selfVisibilityScale"] = kSelfVisibilityScale;
-    extension["geometryChecksum"] = checksumText(*draco);
+    const PositionLattice lattice = latticeOf(mesh);
+    if (const auto added = addLevel(mesh, mesh.name, lattice, options,
+                                    mesh.field ? fieldJson(*mesh.field) : json::object(), out);
+        !added)
+        return added.error();
     if (mesh.field) {
         const std::vector<std::byte> texels = encodeFieldTexels(*mesh.field);
+        json& extension = document["meshes"][0]["extensions"][kFieldExtension];
         extension["fieldChecksum"] = checksumText(texels);
-        extension["bufferView"] = addBufferView(document, bin, texels);
+        extension["bufferView"] = out.addView(texels);
     }
-    const json primitive = primitiveJson(document, shipped, dracoView);
-    document["meshes"] = json::array({{{"name", mesh.name},
-                                       {"primitives", json::array({primitive})},
-                                       {"extensions", {{kFieldExtension, extension}}}}});
-    document["buffers"] = json::array({{{"byteLength", bin.size()}}});
+    if (const auto added = addLods(mesh, lattice, options, out); !added)
+        return added.error();
+    writeMaterials(materialsOf(mesh), mesh.images, out);
+    if (!mesh.images.empty())
+        document["meshes"][0]["extensions"][kFieldExtension]["imageChecksum"] =
+            imageChecksum(mesh.images);
+    writeLights(mesh.lights, out);
+    document["buffers"] = json::array({{{"byteLength", out.bin.size()}}});
     // A name that is not UTF-8 gets replacement characters.
-    return writeGlb(document.dump(-1, ' ', false, json::error_handler_t::replace), bin);
+    const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
+    if (text.size() > kMaxMeshJsonBytes)
+        return Error{fmt::format("JSON of {} bytes, more than {}; merge materials", text.size(),
+                                 kMaxMeshJsonBytes)};
+    return writeGlb(text, out.bin);
 }
 
 } // namespace penumbra

@@ -16,6 +16,7 @@ struct BakeArguments {
     CompileOptions options;
 };
 int runBake(const BakeArguments& arguments);
+int runBakeScene(const BakeArguments& arguments); // --per-node: `output` is a folder
 
 struct EnvironmentArguments {
     std::filesystem::path input, output, report;

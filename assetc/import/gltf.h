@@ -13,8 +13,9 @@ namespace penumbra {
 // All triangle primitives of the default scene (strips and fans too), each node's transform
 // applied, as one mesh in the world space of the file. Skins and morph targets are baked in the
 // pose that the file stores. Draco, quantised, sparse and interleaved attributes are read;
-// extensions that the file requires beyond these are refused by name. The albedo is the base colour
-// factor of the primitive with the largest area.
+// extensions that the file requires beyond these are refused by name. Instances
+// (EXT_mesh_gpu_instancing) are so many meshes. Materials, their PNG and JPEG images and lights
+// come along.
 Result<ImportedMesh> importGltf(const std::filesystem::path& path,
                                 std::vector<AskedFile>* asked = nullptr);
 

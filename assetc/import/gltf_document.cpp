@@ -57,7 +57,8 @@ bool isSupported(const std::string& extension)
                                "KHR_lights_punctual", "KHR_animation_"})
         if (extension.starts_with(prefix))
             return true;
-    return extension == "KHR_draco_mesh_compression" || extension == "KHR_mesh_quantization";
+    return extension == "KHR_draco_mesh_compression" || extension == "KHR_mesh_quantization" ||
+           extension == "EXT_mesh_gpu_instancing" || extension == "MSFT_lod";
 }
 
 Result<void> checkExtensions(const json& document)
@@ -110,7 +111,7 @@ Result<void> checkBuffers(const json& document, const std::filesystem::path& fol
     if (buffers == document.end())
         return {};
     if (!buffers->is_array())
-        return Error{"buffers is not an array"};
+        return Error{"buffers is not an array; if this is glTF 1.0, convert it to 2.0"};
     std::uint64_t sum = 0;
     JsonProblems problems;
     for (std::size_t i = 0; i < buffers->size(); ++i) {
@@ -128,20 +129,21 @@ Result<void> checkBuffers(const json& document, const std::filesystem::path& fol
     return {};
 }
 
-// Drops what is not read, so that no image is decoded and no damage there matters. Draco primitives
-// lose `indices`: their accessor rightly has no bufferView, which tinygltf refuses.
-void dropUnread(json& document, std::vector<std::string>& warnings)
+// The part that tinygltf parses. Materials are empty there, so that primitives can name them.
+// Draco primitives lose `indices`: their accessor rightly has no bufferView, which tinygltf
+// refuses.
+json partToParse(const json& document)
 {
-    if (document.contains("animations"))
-        warnings.emplace_back("animations are not read: the rest pose is baked");
-    if (document.contains("textures"))
-        warnings.emplace_back("textures are not read: the albedo is the base colour factor");
+    json part = document;
     for (const char* key :
          {"animations", "cameras", "extensions", "extras", "images", "samplers", "textures"})
-        document.erase(key);
-    const auto meshes = document.find("meshes");
-    if (meshes == document.end() || !meshes->is_array())
-        return;
+        part.erase(key);
+    if (const auto materials = part.find("materials");
+        materials != part.end() && materials->is_array())
+        *materials = json(std::vector<json>(materials->size(), json::object()));
+    const auto meshes = part.find("meshes");
+    if (meshes == part.end() || !meshes->is_array())
+        return part;
     for (json& mesh : *meshes) {
         if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array())
             continue;
@@ -151,13 +153,13 @@ void dropUnread(json& document, std::vector<std::string>& warnings)
                 primitive["extensions"].contains("KHR_draco_mesh_compression"))
                 primitive.erase("indices");
     }
+    return part;
 }
 
 } // namespace
 
-Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
-                                 const std::filesystem::path& folder,
-                                 std::vector<std::string>& warnings, std::vector<AskedFile>* asked)
+Result<GltfDocument> loadGltf(std::span<const std::byte> bytes, const std::filesystem::path& folder,
+                              std::vector<std::string>& warnings, std::vector<AskedFile>* asked)
 {
     constexpr std::array<std::byte, 4> kMagic = {std::byte{'g'}, std::byte{'l'}, std::byte{'T'},
                                                  std::byte{'F'}};
@@ -178,14 +180,20 @@ Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
         return extensions.error();
     if (const auto buffers = checkBuffers(*document, source.folder, asked); !buffers)
         return buffers.error();
-    dropUnread(*document, warnings);
-    if (const auto numbers = checkNumbers(*document, ""); !numbers)
+    if (document->contains("animations"))
+        warnings.emplace_back("animations are not read: the rest pose is baked");
+    json buffersOnly = std::move((*document)["buffers"]); // base64 may be most of the file
+    document->erase("buffers");
+    json parsedPart = partToParse(*document);
+    if (!buffersOnly.is_null())
+        parsedPart["buffers"] = std::move(buffersOnly);
+    if (const auto numbers = checkNumbers(parsedPart, ""); !numbers)
         return numbers.error();
-    const std::string json = document->dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string json = parsedPart.dump(-1, ' ', false, json::error_handler_t::replace);
 
     tinygltf::TinyGLTF parser;
     parser.SetFsCallbacks({fileExists, keepPath, readWhole, refuseWrite, &source});
-    tinygltf::Model model;
+    GltfDocument out{std::move(*document), {}, source.folder, asked};
     std::string error;
     std::string ignored;
     bool parsed = false;
@@ -193,11 +201,11 @@ Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
         const auto glb = writeGlb(json, view.bin);
         if (!glb)
             return glb.error();
-        parsed = parser.LoadBinaryFromMemory(&model, &error, &ignored,
+        parsed = parser.LoadBinaryFromMemory(&out.model, &error, &ignored,
                                              reinterpret_cast<const unsigned char*>(glb->data()),
                                              static_cast<unsigned>(glb->size()));
     } else {
-        parsed = parser.LoadASCIIFromString(&model, &error, &ignored, json.data(),
+        parsed = parser.LoadASCIIFromString(&out.model, &error, &ignored, json.data(),
                                             static_cast<unsigned>(json.size()), "");
     }
     if (!parsed) {
@@ -205,9 +213,9 @@ Result<tinygltf::Model> loadGltf(std::span<const std::byte> bytes,
             error.pop_back();
         return Error{"not a readable glTF file: " + error.substr(0, 400)};
     }
-    if (const auto checked = checkModel(model); !checked)
+    if (const auto checked = checkModel(out.model); !checked)
         return checked.error();
-    return model;
+    return out;
 }
 
 } // namespace penumbra

@@ -32,11 +32,12 @@ public:
     [[nodiscard]] Result<std::vector<float>> read(const char* name, int type) const
     {
         if (m_draco && m_dracoIds.Has(name))
-            return m_draco->floats(
-                static_cast<std::uint32_t>(m_dracoIds.Get(name).GetNumberAsInt()),
-                tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+            return readDraco(name, type);
         return readFloats(*m_model, m_primitive->attributes.at(name), type);
     }
+
+    // TINYGLTF_TYPE_… that the accessor says.
+    [[nodiscard]] int typeOf(const char* name) const { return accessorOf(name).type; }
 
     [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t vertexCount) const
     {
@@ -55,6 +56,29 @@ private:
     AttributeSource(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
         : m_model(&model), m_primitive(&primitive)
     {}
+
+    [[nodiscard]] const tinygltf::Accessor& accessorOf(const char* name) const
+    {
+        return m_model->accessors[static_cast<std::size_t>(m_primitive->attributes.at(name))];
+    }
+
+    // Exporters forget to mark integers as normalised in the payload: the accessor counts.
+    [[nodiscard]] Result<std::vector<float>> readDraco(const char* name, int type) const
+    {
+        const auto id = static_cast<std::uint32_t>(m_dracoIds.Get(name).GetNumberAsInt());
+        auto values =
+            m_draco->floats(id, tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+        const tinygltf::Accessor& accessor = accessorOf(name);
+        const float largest = accessor.componentType == TINYGLTF_COMPONENT_TYPE_BYTE    ? 127.0f
+                              : accessor.componentType == TINYGLTF_COMPONENT_TYPE_SHORT ? 32767.0f
+                              : accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE
+                                  ? 255.0f
+                                  : 65535.0f;
+        if (values && accessor.normalized && !m_draco->normalized(id))
+            for (float& value : *values)
+                value /= largest;
+        return values;
+    }
 
     Result<void> openDraco(const tinygltf::Value& extension)
     {
@@ -149,6 +173,46 @@ Result<void> readSkinning(const AttributeSource& source, std::size_t vertexCount
     return {};
 }
 
+Result<void> readTexcoords(const AttributeSource& source, const char* name,
+                           std::vector<vec2>& texcoords, GltfPrimitive& out)
+{
+    if (!source.has(name))
+        return {};
+    const auto values = source.read(name, TINYGLTF_TYPE_VEC2);
+    if (!values)
+        return fail(values.error(), name);
+    if (values->size() != 2 * out.positions.size())
+        return Error{fmt::format("{} has another count than POSITION", name)};
+    for (std::size_t i = 0; i < values->size(); i += 2) {
+        const vec2 uv((*values)[i], (*values)[i + 1]);
+        const bool good = abs(uv.x) <= kMaxTextureNumber && abs(uv.y) <= kMaxTextureNumber;
+        texcoords.push_back(good ? uv : vec2{0});
+        out.mendedTexcoords = out.mendedTexcoords || !good;
+    }
+    return {};
+}
+
+Result<void> readColors(const AttributeSource& source, GltfPrimitive& out)
+{
+    if (!source.has("COLOR_0"))
+        return {};
+    const int type =
+        source.typeOf("COLOR_0") == TINYGLTF_TYPE_VEC3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4;
+    const auto values = source.read("COLOR_0", type);
+    if (!values)
+        return fail(values.error(), "COLOR_0");
+    const std::size_t components = type == TINYGLTF_TYPE_VEC3 ? 3 : 4;
+    if (values->size() != components * out.positions.size())
+        return Error{"COLOR_0 has another count than POSITION"};
+    out.colors.assign(out.positions.size(), {255, 255, 255, 255});
+    for (std::size_t i = 0; i < values->size(); ++i) {
+        const float value = (*values)[i];
+        out.colors[i / components][i % components] = static_cast<std::uint8_t>(
+            value > 0 ? min(value, 1.0f) * 255.0f + 0.5f : 0.0f); // NaN is 0
+    }
+    return {};
+}
+
 // Strips and fans as lists; corners beyond whole triangles are dropped. Strips turn every other
 // triangle around.
 std::vector<std::uint32_t> toTriangleList(const std::vector<std::uint32_t>& in, int mode)
@@ -204,6 +268,12 @@ Result<GltfPrimitive> readPrimitive(const tinygltf::Model& model,
         return morphed.error();
     if (const auto skinning = readSkinning(*source, vertexCount, out); !skinning)
         return skinning.error();
+
+    for (const Result<void>& read :
+         {readTexcoords(*source, "TEXCOORD_0", out.texcoords[0], out),
+          readTexcoords(*source, "TEXCOORD_1", out.texcoords[1], out), readColors(*source, out)})
+        if (!read)
+            return read.error();
 
     const auto indices = source->indices(vertexCount);
     if (!indices)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assetc/import/folder.h"
-#include "assetc/import/imported_mesh.h"
+#include "assetc/import/imported_scene.h"
 
 #include <filesystem>
 
@@ -14,5 +14,8 @@ namespace penumbra {
 // that is refused too.
 Result<ImportedMesh> importMesh(const std::filesystem::path& path,
                                 std::vector<AskedFile>* asked = nullptr);
+
+// The same file with its hierarchy; of an OBJ file one node.
+Result<ImportedScene> importScene(const std::filesystem::path& path);
 
 } // namespace penumbra

@@ -9,8 +9,9 @@
 namespace penumbra {
 
 struct ImportedMesh {
-    MeshAsset mesh; // positions, normals, indices, albedo and name; a normal of 0 is one that the
-                    // file lacks
+    // Vertices (a normal of 0 is one that the file lacks), indices, one submesh per primitive of
+    // the file, materials, images, lights, name.
+    MeshAsset mesh;
     std::vector<std::string> warnings;
 };
 

@@ -1,5 +1,7 @@
 #include "assetc/import/obj.h"
 
+#include "assetc/import/image_library.h"
+#include "assetc/import/vertex_key.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -174,49 +176,87 @@ vec3 vectorAt(const std::vector<float>& values, int index)
     return {values[at], values[at + 1], values[at + 2]};
 }
 
+// OBJ counts v from the image's bottom, glTF from its top.
+vec2 texcoordAt(const std::vector<float>& values, int index)
+{
+    const std::size_t at = 2 * static_cast<std::size_t>(index);
+    const vec2 uv(values[at], 1 - values[at + 1]);
+    return abs(uv.x) <= kMaxTextureNumber && abs(uv.y) <= kMaxTextureNumber ? uv : vec2{0};
+}
+
+// Corners alike in position, normal and texture coordinates are one vertex; a run of faces of one
+// material is a submesh. A texture coordinate that does not exist is (0, 0).
 Result<void> addFaces(const ObjFile& file, MeshAsset& mesh)
 {
-    std::unordered_map<std::uint64_t, std::uint32_t>
-        vertexOf;                // (position, normal) of the file -> vertex
-    std::map<int, double> areas; // by material
+    std::unordered_map<FloatKey<3>, std::uint32_t, FloatKeyHash<3>> vertexOf;
+    const auto texcoordCount = static_cast<int>(file.attributes.texcoords.size() / 2);
+    const auto materialCount = static_cast<int>(file.materials.size());
     for (const tinyobj::shape_t& shape : file.shapes) {
         if (mesh.indices.size() / 3 + shape.mesh.indices.size() / 3 > kMaxMeshTriangles)
             return Error{
                 fmt::format("more than {} triangles; simplify the mesh", kMaxMeshTriangles)};
         for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
             const tinyobj::index_t& index = shape.mesh.indices[i];
-            const std::uint64_t key = static_cast<std::uint64_t>(index.vertex_index) << 32 |
-                                      static_cast<std::uint32_t>(index.normal_index);
             const auto [found, isNew] =
-                vertexOf.emplace(key, static_cast<std::uint32_t>(mesh.positions.size()));
+                vertexOf.emplace(FloatKey<3>{{static_cast<std::uint32_t>(index.vertex_index),
+                                              static_cast<std::uint32_t>(index.normal_index),
+                                              static_cast<std::uint32_t>(index.texcoord_index)}},
+                                 static_cast<std::uint32_t>(mesh.positions.size()));
             if (isNew) {
                 mesh.positions.push_back(vectorAt(file.attributes.vertices, index.vertex_index));
                 mesh.normals.push_back(index.normal_index < 0
                                            ? vec3{0}
                                            : vectorAt(file.attributes.normals, index.normal_index));
+                mesh.texcoords0.push_back(
+                    index.texcoord_index < 0 || index.texcoord_index >= texcoordCount
+                        ? vec2{0}
+                        : texcoordAt(file.attributes.texcoords, index.texcoord_index));
+            }
+            if (i % 3 == 0) {
+                const std::size_t face = i / 3;
+                const int id =
+                    face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
+                const auto material =
+                    static_cast<std::uint32_t>(id < 0 || id >= materialCount ? materialCount : id);
+                if (mesh.submeshes.empty() || mesh.submeshes.back().material != material)
+                    mesh.submeshes.push_back(
+                        {static_cast<std::uint32_t>(mesh.indices.size()), 0, 0, 0, material});
+                mesh.submeshes.back().indexCount += 3;
             }
             mesh.indices.push_back(found->second);
-            if (i % 3 == 2) {
-                const vec3* p = mesh.positions.data();
-                const std::size_t end = mesh.indices.size();
-                const vec3 a = p[mesh.indices[end - 3]];
-                const std::size_t face = i / 3;
-                const int material =
-                    face < shape.mesh.material_ids.size() ? shape.mesh.material_ids[face] : -1;
-                areas[material] +=
-                    length(cross(p[mesh.indices[end - 2]] - a, p[mesh.indices[end - 1]] - a));
-            }
         }
     }
-    const auto largest =
-        std::max_element(areas.begin(), areas.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (largest != areas.end() && largest->first >= 0 &&
-        static_cast<std::size_t>(largest->first) < file.materials.size())
-        for (int c = 0; c < 3; ++c)
-            mesh.material.albedo[c] = clamp(
-                file.materials[static_cast<std::size_t>(largest->first)].diffuse[c], 0.0f, 1.0f);
     return {};
+}
+
+// Kd, d and map_Kd of every material, and one more for faces without.
+void addMaterials(const ObjFile& file, const std::filesystem::path& folder,
+                  std::vector<AskedFile>* asked, ImportedMesh& out)
+{
+    ImageLibrary library;
+    for (const tinyobj::material_t& source : file.materials) {
+        SurfaceMaterial material;
+        material.name = source.name.substr(0, kMaxNameBytes);
+        const auto unit = [](double value) { return value > 0 ? std::min(value, 1.0) : 0.0; };
+        for (int c = 0; c < 3; ++c)
+            material.albedo[c] = static_cast<float>(unit(source.diffuse[c]));
+        material.alpha = static_cast<float>(unit(source.dissolve));
+        material.alphaMode = material.alpha < 1 ? AlphaMode::Blend : AlphaMode::Opaque;
+        if (!source.diffuse_texname.empty()) {
+            const auto path = resolveInFolder(folder, source.diffuse_texname, asked);
+            auto bytes = path ? readFile(*path, kMaxImageBytes) : path.error();
+            const auto image = bytes ? library.add(std::move(*bytes)) : bytes.error();
+            if (image)
+                material.textures[kBaseColorTexture] = MeshTexture{.image = *image};
+            else
+                out.warnings.push_back(fmt::format("map_Kd of material \"{}\": {}; left out",
+                                                   material.name, image.error().message));
+        }
+        out.mesh.materials.push_back(material);
+    }
+    out.mesh.materials.push_back({});
+    out.mesh.images = library.take();
+    out.mesh.material = out.mesh.materials[largestMaterial(out.mesh)];
 }
 
 } // namespace
@@ -255,6 +295,7 @@ Result<ImportedMesh> importObjText(const std::string& text, const std::filesyste
     }
     if (const auto added = addFaces(*file, out.mesh); !added)
         return added.error();
+    addMaterials(*file, folder, asked, out);
     return out;
 }
 

@@ -8,9 +8,9 @@
 
 namespace penumbra {
 
-// All faces of the file, triangulated. Material libraries are read only from the file's own folder;
-// the albedo is Kd of the material with the largest area. An index that names nothing is refused
-// with its place.
+// All faces of the file, triangulated. Material libraries and the images of map_Kd are read only
+// from the file's own folder; of materials Kd, d and map_Kd count. An index that names nothing is
+// refused with its place.
 Result<ImportedMesh> importObj(const std::filesystem::path& path,
                                std::vector<AskedFile>* asked = nullptr);
 

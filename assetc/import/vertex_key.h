@@ -37,9 +37,4 @@ inline FloatKey<3> keyOf(vec3 p)
     return {{keyBits(p.x), keyBits(p.y), keyBits(p.z)}};
 }
 
-inline FloatKey<6> keyOf(vec3 p, vec3 n)
-{
-    return {{keyBits(p.x), keyBits(p.y), keyBits(p.z), keyBits(n.x), keyBits(n.y), keyBits(n.z)}};
-}
-
 } // namespace penumbra

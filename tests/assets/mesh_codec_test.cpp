@@ -123,7 +123,7 @@ TEST(MeshCodec, FileIsGltfWithTheTwoExtensions)
     EXPECT_EQ(document["extensionsRequired"],
               nlohmann::json::array({"KHR_draco_mesh_compression"}));
     const auto& extension = document["meshes"][0]["extensions"]["PENUMBRA_shadow_field"];
-    EXPECT_EQ(extension["version"], "1.1");
+    EXPECT_EQ(extension["version"], "1.2");
     EXPECT_EQ(extension["basis"], "sh4");
     EXPECT_EQ(extension["byteLength"], 34 * 16);
     const auto& attributes = document["meshes"][0]["primitives"][0]["attributes"];

@@ -1,0 +1,15 @@
+// glTF 2.0 with its hierarchy.
+#pragma once
+
+#include "assetc/import/imported_scene.h"
+
+#include <filesystem>
+
+namespace penumbra {
+
+// The nodes of the default scene, parents first. Nodes that show one mesh by similarities share it;
+// any other transform is partly in a mesh of its own (SplitTransform::rest). Each instance of
+// EXT_mesh_gpu_instancing is a child of its node. Error: a skin, which is not rigid.
+Result<ImportedScene> importGltfScene(const std::filesystem::path& path);
+
+} // namespace penumbra
