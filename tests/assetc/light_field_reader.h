@@ -15,8 +15,7 @@ public:
     explicit LightFieldReader(const ShadowField& field) : m_field(field)
     {
         const auto shells = static_cast<std::uint32_t>(field.shellSides.size());
-        const std::uint32_t side =
-            *std::max_element(field.shellSides.begin(), field.shellSides.end());
+        const std::uint32_t side = largestSide(field);
         const float scale =
             static_cast<float>(shells - 1) / std::log2(field.outerRadius / field.innerRadius);
         m_grid = {0,
@@ -26,13 +25,13 @@ public:
                   static_cast<float>(shells - 1),
                   shells};
         for (std::uint32_t channel = 0; channel < field.channels; ++channel) {
-            std::vector<std::uint8_t> bytes(std::size_t{side} * side * shells * 16);
-            for (std::uint32_t s = 0; s < shells; ++s) {
-                const auto shell =
-                    refineGrid(fieldGrid(field, channel * shells + s), field.shellSides[s], side);
-                for (std::size_t node = 0; node < std::size_t{side} * side; ++node)
-                    std::copy_n(&shell[16 * node], 16, &bytes[16 * (node * shells + s)]);
-            }
+            const std::size_t nodes = std::size_t{side} * side;
+            const std::vector<std::uint8_t> texels = refineField(field, channel);
+            std::vector<std::uint8_t> bytes(texels.size());
+            for (std::size_t s = 0; s < shells; ++s)
+                for (std::size_t node = 0; node < nodes; ++node)
+                    std::copy_n(&texels[16 * (s * nodes + node)], 16,
+                                &bytes[16 * (node * shells + s)]);
             m_bytes.push_back(std::move(bytes));
         }
     }

@@ -21,7 +21,7 @@ MeshAsset finish(MeshAsset mesh, bool bake)
             bakeMesh(mesh.positions, mesh.normals, mesh.indices,
                      {.shells = 12, .side = 17, .directions = 256, .rasterSide = 128}, progress);
         mesh.selfVisibility = std::move(baked.selfVisibility);
-        mesh.field = std::move(baked.field);
+        mesh.field = quantiseField(baked.field);
     }
     return mesh;
 }
