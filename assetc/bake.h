@@ -12,15 +12,17 @@
 
 namespace penumbra {
 
-// Sides of the shells before any is made coarser. Inside half the bounding radius a grid of half
-// the side is as fine, in metres, as the full one outside.
+// Sides of the shells before adaptation makes any coarser: half of `side` where more is not worth
+// its time. Inside half the bounding radius that is as fine, in metres, as the full side outside;
+// from two radii on it errs by less than half of the default threshold (docs/decisions/0006).
 std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side);
 
 struct BakeOptions {
     std::uint32_t shells = 32;
     std::uint32_t side = 65;         // 2^k + 1
     std::uint32_t directions = 1024; // even
-    std::uint32_t rasterSide = 512;  // pixels across the bounding sphere
+    std::uint32_t rasterSide = 384;  // pixels across the bounding sphere; 512 takes 1.5 times as
+                                     // long and differs at single nodes beside surfaces
     bool field = true;
 };
 

@@ -44,7 +44,7 @@ struct Receivers {
 
 // Outside this radius a point asks for the whole cell of a direction, which has less than a quarter
 // of the noise; inside, what is blocked lies at too many distances.
-constexpr float kCellRadius = 1.15f;
+constexpr float kCellRadius = 1.03f;
 
 // The order of additions depends on nothing but the point, so any thread count gives the same bits.
 void accumulate(const std::vector<LineSpace>& lines, const BakeDirections& bake,
@@ -125,9 +125,11 @@ void readProbes(const Receivers& offGrid, std::vector<Probe>& probes)
 std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side)
 {
     std::vector<std::uint16_t> sides;
-    for (std::size_t s = 0; s < field.shellSides.size(); ++s)
-        sides.push_back(static_cast<std::uint16_t>(
-            shellRadius(field, s) < 0.5f && side >= 17 ? (side + 1) / 2 : side));
+    for (std::size_t s = 0; s < field.shellSides.size(); ++s) {
+        const float r = shellRadius(field, s);
+        const bool coarser = side >= 17 && (r < 0.5f || r > 2);
+        sides.push_back(static_cast<std::uint16_t>(coarser ? (side + 1) / 2 : side));
+    }
     return sides;
 }
 

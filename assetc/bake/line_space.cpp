@@ -122,14 +122,6 @@ struct Lines {
 };
 
 // Everything below compiles to vector code without branches.
-inline __attribute__((always_inline)) int pixelOf(float column, float row, float side)
-{
-    // From 0, the empty pixel before the first one, to side + 1, that after the last.
-    const float x = std::min(std::max(column + 1.0f, 0.0f), side + 1.0f);
-    const float y = std::min(std::max(row + 1.0f, 0.0f), side + 1.0f);
-    return static_cast<int>(y) * pitchOf(static_cast<int>(side)) + static_cast<int>(x);
-}
-
 inline __attribute__((always_inline)) void project(const LookUp& l, std::size_t count, Lines& lines)
 {
     const float half = 0.5f * l.side;
@@ -141,22 +133,66 @@ inline __attribute__((always_inline)) void project(const LookUp& l, std::size_t 
     }
 }
 
+// What the four lines around a point's line hit: depth along w and along -w, 1 where anything.
+struct Corners {
+    float far[4][LineSpace::kMaxLookUp], near[4][LineSpace::kMaxLookUp];
+    float hit[4][LineSpace::kMaxLookUp];
+};
+
+inline __attribute__((always_inline)) void readCorner(const std::uint32_t* raster, const int* pixel,
+                                                      std::size_t count, float* far, float* near,
+                                                      float* hit)
+{
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t line = raster[pixel[i]];
+        const auto packedFar = static_cast<float>(static_cast<int>(line >> 16));
+        const auto packedNear = static_cast<float>(static_cast<int>(line & 0xffff));
+        hit[i] = std::min(packedFar, 1.0f);
+        const float nothing = 1 + (1 - hit[i]) * kBeyond;
+        far[i] = packedFar * kDepthStep - nothing;
+        near[i] = packedNear * kDepthStep - nothing;
+    }
+}
+
+// Depths are interpolated between the four nearest lines where all of them hit something, so that a
+// point beside a slanted surface meets it where it is; at a rim the nearest line decides. In loops
+// that compilers vectorise one by one.
 PENUMBRA_CLONES int lookUpLines(const LookUp& l, std::size_t count, float* plus, float* minus)
 {
     Lines lines;
     project(l, count, lines);
-    const std::uint32_t* raster = l.lines;
-    const float side = l.side;
-    int any = 0;
+    int pixel[LineSpace::kMaxLookUp];
+    float u[LineSpace::kMaxLookUp], v[LineSpace::kMaxLookUp];
+    const int pitch = pitchOf(static_cast<int>(l.side));
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t line = raster[pixelOf(lines.column[i], lines.row[i], side)];
-        const auto far = static_cast<float>(static_cast<int>(line >> 16));
-        const auto near = static_cast<float>(static_cast<int>(line & 0xffff));
-        const float nothing = line == 0 ? kBeyond : 1.0f;
-        plus[i] = far * kDepthStep - nothing > lines.depth[i] ? 1.0f : 0.0f;
-        minus[i] = near * kDepthStep - nothing > -lines.depth[i] ? 1.0f : 0.0f;
-        any |= (plus[i] + minus[i] > 0 ? 1 : 0);
+        // From 0.5: the centre of pixel 0 of the raster with its rim lies there.
+        const float x = std::min(std::max(lines.column[i] + 0.5f, 0.0f), l.side);
+        const float y = std::min(std::max(lines.row[i] + 0.5f, 0.0f), l.side);
+        pixel[i] = static_cast<int>(y) * pitch + static_cast<int>(x);
+        u[i] = x - static_cast<float>(static_cast<int>(x));
+        v[i] = y - static_cast<float>(static_cast<int>(y));
     }
+    Corners corners;
+    for (int k = 0; k < 4; ++k)
+        readCorner(l.lines + (k & 1) + (k >> 1) * pitch, pixel, count, corners.far[k],
+                   corners.near[k], corners.hit[k]);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float hits =
+            corners.hit[0][i] * corners.hit[1][i] * corners.hit[2][i] * corners.hit[3][i];
+        const auto nearestU = static_cast<float>(static_cast<int>(u[i] + 0.5f));
+        const auto nearestV = static_cast<float>(static_cast<int>(v[i] + 0.5f));
+        const float wu = nearestU + hits * (u[i] - nearestU);
+        const float wv = nearestV + hits * (v[i] - nearestV);
+        const auto blend = [&](const float(&at)[4][LineSpace::kMaxLookUp]) {
+            return (at[0][i] * (1 - wu) + at[1][i] * wu) * (1 - wv) +
+                   (at[2][i] * (1 - wu) + at[3][i] * wu) * wv;
+        };
+        plus[i] = blend(corners.far) > lines.depth[i] ? 1.0f : 0.0f;
+        minus[i] = blend(corners.near) > -lines.depth[i] ? 1.0f : 0.0f;
+    }
+    int any = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        any |= plus[i] + minus[i] > 0 ? 1 : 0;
     return any;
 }
 
