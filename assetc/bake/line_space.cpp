@@ -166,8 +166,9 @@ PENUMBRA_CLONES int lookUpLines(const LookUp& l, std::size_t count, float* plus,
     const int pitch = pitchOf(static_cast<int>(l.side));
     for (std::size_t i = 0; i < count; ++i) {
         // From 0.5: the centre of pixel 0 of the raster with its rim lies there.
-        const float x = std::min(std::max(lines.column[i] + 0.5f, 0.0f), l.side);
-        const float y = std::min(std::max(lines.row[i] + 0.5f, 0.0f), l.side);
+        // Up to nearer to the rim than to the last pixel.
+        const float x = std::min(std::max(lines.column[i] + 0.5f, 0.0f), l.side + 0.75f);
+        const float y = std::min(std::max(lines.row[i] + 0.5f, 0.0f), l.side + 0.75f);
         pixel[i] = static_cast<int>(y) * pitch + static_cast<int>(x);
         u[i] = x - static_cast<float>(static_cast<int>(x));
         v[i] = y - static_cast<float>(static_cast<int>(y));
