@@ -79,6 +79,12 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
             return fail(quantised.error(), place);
     }
     BakeOptions bake = options.bake;
+    if (const std::uint64_t bytes =
+            std::uint64_t{bake.shells} * bake.side * bake.side * kFieldCoefficients;
+        bake.field && bytes > kMaxFieldBytes)
+        return Error{fmt::format("{}: {} shells of {}² take {} bytes, at most {}; ask for fewer or "
+                                 "coarser ones",
+                                 place, bake.shells, bake.side, bytes, kMaxFieldBytes)};
     float threshold = options.adaptThreshold;
     if (options.targetError && bake.field) {
         const StageTimer timer(report.times, "target");

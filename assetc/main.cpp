@@ -20,6 +20,19 @@ std::string checkSide(const std::string& text)
     return fmt::format("{} is not 2^k + 1 from 3 to {}", text, kMaxFieldSide);
 }
 
+// CLI::Range lets NaN pass.
+CLI::Validator finiteRange(double min, double max)
+{
+    return {[min, max](std::string& text) {
+                char* end = nullptr;
+                const double value = std::strtod(text.c_str(), &end);
+                return *end == 0 && end != text.c_str() && value >= min && value <= max
+                           ? std::string()
+                           : fmt::format("{} is not a number from {} to {}", text, min, max);
+            },
+            fmt::format("{} to {}", min, max)};
+}
+
 std::string checkEven(const std::string& text)
 {
     return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string() : text + " is not even";
@@ -80,30 +93,37 @@ int run(int argc, char** argv)
     bakeCommand->add_option("--lods", bake.options.lods, "Levels of detail, each half of the last")
         ->check(CLI::Range(0u, kMaxMeshLods))
         ->capture_default_str();
-    bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
-        ->check(CLI::Range(2u, kMaxFieldShells))
-        ->capture_default_str();
-    bakeCommand
-        ->add_option("--max-side", bake.options.bake.side, "Nodes along a shell's edge, 2^k + 1")
-        ->check(CLI::Validator(checkSide, "2^k+1"))
-        ->capture_default_str();
-    bakeCommand
-        ->add_option("--directions", bake.options.bake.directions, "Directions per sample, even")
-        ->check(CLI::Range(2u, 65536u))
-        ->check(CLI::Validator(checkEven, "even"))
-        ->capture_default_str();
+    CLI::Option* shells =
+        bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
+            ->check(CLI::Range(2u, kMaxFieldShells))
+            ->capture_default_str();
+    CLI::Option* maxSide = bakeCommand
+                               ->add_option("--max-side", bake.options.bake.side,
+                                            "Nodes along a shell's edge, 2^k + 1")
+                               ->check(CLI::Validator(checkSide, "2^k+1"))
+                               ->capture_default_str();
+    CLI::Option* directions = bakeCommand
+                                  ->add_option("--directions", bake.options.bake.directions,
+                                               "Directions per sample, even")
+                                  ->check(CLI::Range(2u, 65536u))
+                                  ->check(CLI::Validator(checkEven, "even"))
+                                  ->capture_default_str();
     bakeCommand
         ->add_option("--threshold", bake.options.adaptThreshold,
                      "Error up to which a shell takes a coarser grid (Tamura 2006, Eq. 1); 0: all "
-                     "shells keep --max-side")
-        ->check(CLI::Range(0.0f, 1.0f))
+                     "shells keep theirs")
+        ->check(finiteRange(0, 1))
         ->capture_default_str();
-    bakeCommand
-        ->add_option("--target-error", bake.options.targetError,
-                     "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
-                     "threshold")
-        ->check(CLI::Range(1e-4f, 1.0f));
+    CLI::Option* targetError =
+        bakeCommand
+            ->add_option(
+                "--target-error", bake.options.targetError,
+                "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
+                "threshold")
+            ->check(finiteRange(1e-4, 1));
     CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
+    for (CLI::Option* option : {shells, maxSide, directions, noFieldFlag})
+        targetError->excludes(option);
     bakeCommand
         ->add_flag("--verify", bake.options.verify,
                    "Compare a sample of the field with traced rays")
@@ -135,7 +155,7 @@ int run(int argc, char** argv)
         ->add_option("--threshold", light.options.adaptThreshold,
                      "Error up to which a shell takes a coarser grid, as a part of the light at "
                      "the brightest place; 0: all shells keep --max-side")
-        ->check(CLI::Range(0.0f, 1.0f))
+        ->check(finiteRange(0, 1))
         ->capture_default_str();
     lightCommand->add_option("--jobs", jobs, "Threads; all processors by default")
         ->check(CLI::Range(1u, 1024u));

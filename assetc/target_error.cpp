@@ -47,8 +47,10 @@ TargetReport reachError(const MeshAsset& mesh, float target, BakeOptions& option
     options.shells = 16;
     options.side = 33;
     options.directions = 512;
+    const float firstThreshold = threshold;
     TargetReport report;
     for (;;) {
+        threshold = firstThreshold;
         const auto start = std::chrono::steady_clock::now();
         const BakeResult baked =
             bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);

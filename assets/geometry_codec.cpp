@@ -231,6 +231,7 @@ MeshGeometry decodePrimitives(const JsonReader& root, const JsonReader& mesh,
     const JsonReader primitives = mesh.member("primitives");
     const std::size_t count = primitives.length(kMaxMeshMaterials);
     std::vector<PrimitiveHead> heads;
+    std::uint64_t payloadBytes = 0;
     std::uint64_t vertexCount = 0;
     std::uint64_t indexCount = 0;
     for (std::size_t p = 0; p < std::max<std::size_t>(count, 1); ++p) {
@@ -246,6 +247,9 @@ MeshGeometry decodePrimitives(const JsonReader& root, const JsonReader& mesh,
                                       static_cast<std::uint32_t>(head.indexCount),
                                       static_cast<std::uint32_t>(vertexCount),
                                       static_cast<std::uint32_t>(head.vertexCount), head.material});
+        payloadBytes += head.payload.size();
+        if (payloadBytes > bin.size()) // the same bytes twice, and once more for each primitive
+            primitive.refuse("shares its Draco payload with another one");
         vertexCount += head.vertexCount;
         indexCount += head.indexCount;
         if (vertexCount > kMaxMeshVertices || indexCount > 3ull * kMaxMeshTriangles)
@@ -255,10 +259,10 @@ MeshGeometry decodePrimitives(const JsonReader& root, const JsonReader& mesh,
     }
     if (const JsonReader extension = mesh.member("extensions").member(kFieldExtension);
         problems.size() == before && extension.has("geometryChecksum")) {
-        std::vector<std::byte> payloads;
+        std::vector<std::span<const std::byte>> payloads;
         for (const PrimitiveHead& head : heads)
-            payloads.insert(payloads.end(), head.payload.begin(), head.payload.end());
-        checkPayload(extension, "geometryChecksum", payloads);
+            payloads.push_back(head.payload);
+        checkPayload(extension, "geometryChecksum", checksumText(payloads));
     }
     if (problems.size() > before)
         return geometry;

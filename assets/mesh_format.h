@@ -20,10 +20,9 @@ constexpr const char* kFieldEncoding = "delta-zstd";
 constexpr const char* kSelfVisibilityNames[] = {"_SELFVIS_0", "_SELFVIS_1", "_SELFVIS_2",
                                                 "_SELFVIS_3"};
 
-// A problem where `member` holds another checksum than that of `payload`; none where it is not
-// there. Before decoding: a decoder reads sense into much that is damaged.
-void checkPayload(const JsonReader& extension, const char* member,
-                  std::span<const std::byte> payload);
+// A problem where `member` holds another checksum than `checksum`, that of the payload; none where
+// it is not there. Before decoding: a decoder reads sense into much that is damaged.
+void checkPayload(const JsonReader& extension, const char* member, const std::string& checksum);
 
 // Checksum of the images' bytes, one after the other.
 std::string imageChecksum(const std::vector<MeshImage>& images);

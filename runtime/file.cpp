@@ -66,6 +66,8 @@ Result<void> writeFile(const std::filesystem::path& path, std::span<const std::b
         return Error{fmt::format("{}: cannot create the folder: {}", path.parent_path().string(),
                                  ec.message())};
 
+    if (std::filesystem::exists(path, ec) && !std::filesystem::is_regular_file(path, ec))
+        return Error{fmt::format("{}: is not a regular file; it stays as it is", path.string())};
     std::string temporary = path.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
     if (file.fd < 0)

@@ -21,9 +21,29 @@ bool checkOutput(const std::filesystem::path& input, const std::filesystem::path
     return true;
 }
 
+bool checkReport(const std::filesystem::path& report,
+                 const std::vector<std::filesystem::path>& others)
+{
+    if (report.empty())
+        return true;
+    if (report.extension() != ".json") {
+        spdlog::error("{}: the report must end in .json", report.string());
+        return false;
+    }
+    std::error_code error;
+    for (const std::filesystem::path& other : others)
+        if (std::filesystem::weakly_canonical(report, error) ==
+            std::filesystem::weakly_canonical(other, error)) {
+            spdlog::error("{}: the report would replace it; choose another name", other.string());
+            return false;
+        }
+    return true;
+}
+
 int runBake(const BakeArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".glb"))
+    if (!checkOutput(arguments.input, arguments.output, ".glb") ||
+        !checkReport(arguments.report, {arguments.input, arguments.output}))
         return kExitUsage;
     const auto asset = [&] {
         Progress progress(arguments.input.stem().string());

@@ -34,11 +34,14 @@ Result<void> writeScene(const BakeArguments& arguments, const CompiledScene& sce
 int runBakeScene(const BakeArguments& arguments)
 {
     std::error_code error;
-    if (std::filesystem::exists(arguments.output, error) &&
-        !std::filesystem::is_directory(arguments.output, error)) {
+    if (arguments.output.extension() == ".glb" ||
+        (std::filesystem::exists(arguments.output, error) &&
+         !std::filesystem::is_directory(arguments.output, error))) {
         spdlog::error("{}: the output of --per-node is a folder", arguments.output.string());
         return kExitUsage;
     }
+    if (!checkReport(arguments.report, {arguments.input, arguments.output / "scene.json"}))
+        return kExitUsage;
     const auto scene = [&] {
         Progress progress(arguments.input.stem().string());
         return compileScene(arguments.input, arguments.options, progress);
@@ -49,6 +52,9 @@ int runBakeScene(const BakeArguments& arguments)
     }
     for (const std::string& warning : scene->warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
+    for (const SceneAsset& part : scene->assets)
+        for (const std::string& warning : part.asset.report.warnings)
+            spdlog::warn("{}: {}", part.file, warning);
     if (const auto written = writeScene(arguments, *scene); !written) {
         spdlog::error("{}", written.error().message);
         return kExitInput;

@@ -133,6 +133,8 @@ void waitForChange(const std::vector<WatchedFile>& files)
 
 int runBuild(const BuildArguments& arguments)
 {
+    if (!checkReport(arguments.report, {arguments.manifest}))
+        return kExitUsage;
     static std::mutex writing; // static: the thread that waits for signals outlives this function
     exitOnSignal(writing, arguments.watch);
     Round round = buildOnce(arguments, writing);

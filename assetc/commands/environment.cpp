@@ -9,7 +9,8 @@ namespace penumbra {
 
 int runEnvironment(const EnvironmentArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".env"))
+    if (!checkOutput(arguments.input, arguments.output, ".env") ||
+        !checkReport(arguments.report, {arguments.input, arguments.output}))
         return kExitUsage;
     const auto environment = importEnvironment(arguments.input);
     if (!environment) {

@@ -10,11 +10,13 @@ namespace penumbra {
 
 int runLight(const LightArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".glb"))
+    if (!checkOutput(arguments.input, arguments.output, ".glb") ||
+        !checkReport(arguments.report, {arguments.input, arguments.output}))
         return kExitUsage;
+    std::vector<AskedFile> asked;
     const auto light = [&] {
         Progress progress(arguments.input.stem().string());
-        return compileLight(arguments.input, arguments.options, progress);
+        return compileLight(arguments.input, arguments.options, progress, &asked);
     }();
     if (!light) {
         spdlog::error("{}", light.error().message);
@@ -22,6 +24,10 @@ int runLight(const LightArguments& arguments)
     }
     for (const std::string& warning : light->asset.report.warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
+    for (const AskedFile& file : asked)
+        if (!checkOutput(arguments.input.parent_path() / file.name, arguments.output, ".glb") ||
+            !checkReport(arguments.report, {arguments.input.parent_path() / file.name}))
+            return kExitUsage;
     const std::span<const std::byte> bytes(light->asset.bytes);
     if (const auto written = writeFile(arguments.output, bytes); !written) {
         spdlog::error("{}", written.error().message);

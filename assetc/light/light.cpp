@@ -95,6 +95,13 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
     };
 
     // The description, and the mesh that people see.
+    if (const std::uint64_t bytes =
+            3ull * options.shells * options.side * options.side * kFieldCoefficients;
+        bytes > kMaxFieldBytes)
+        return Error{fmt::format("{}: {} shells of {}² take {} bytes, at most {}; ask for fewer or "
+                                 "coarser ones",
+                                 source.string(), options.shells, options.side, bytes,
+                                 kMaxFieldBytes)};
     const auto spec = readLightSpec(source, asked);
     if (!spec)
         return spec.error();
@@ -105,8 +112,9 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
         if (asked)
             for (const AskedFile& file : byMesh) {
                 const auto beside = spec->mesh.parent_path() / file.name;
-                asked->push_back(
-                    {beside.lexically_relative(source.parent_path()).string(), file.found});
+                const auto folder = std::filesystem::weakly_canonical(
+                    std::filesystem::absolute(source).parent_path());
+                asked->push_back({beside.lexically_relative(folder).string(), file.found});
             }
         if (!imported)
             return imported.error();
