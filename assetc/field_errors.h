@@ -11,12 +11,14 @@ namespace penumbra {
 //   total         trilinear, as a reader samples the bytes, at the probe
 //   angular       bilinear in the samples of a shell, on that shell in the probe's direction;
 //                 includes what adaptation took away
-//   radial        linear between the exact values on the two shells, at the probe
+//   radial        linear between the exact values on the two shells, at the probe; shells that
+//                 adaptation left out count as there: their loss is in `angular`
 //   quantisation  bytes against samples, at the probe
 //   directions    half the difference between the fields of every other direction: what the other
 //                 causes cannot know, since their exact values have the same directions
 //   bandLimit     the blocked directions are a function B of 0 and 1, so |B|² = ∫B, and its part
-//                 beyond order 4 is |B|² - sum b_i²
+//                 beyond order 4 is |B|² - sum b_i²; where far cells are blocked in part, |B|² is
+//                 that of the directions, not of the cells
 FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
                           const std::vector<Probe>& probes);
 

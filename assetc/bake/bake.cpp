@@ -127,7 +127,7 @@ std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t si
     std::vector<std::uint16_t> sides;
     for (std::size_t s = 0; s < field.shellSides.size(); ++s) {
         const float r = shellRadius(field, s);
-        const bool coarser = side >= 17 && (r < 0.5f || r > 2);
+        const bool coarser = side >= 65 && (r < 0.5f || r > 2);
         sides.push_back(static_cast<std::uint16_t>(coarser ? (side + 1) / 2 : side));
     }
     return sides;

@@ -35,7 +35,8 @@ public:
     void rasterise(vec3 w, const PointSet& vertices, const std::vector<std::uint32_t>& indices,
                    RasterScratch& scratch);
 
-    // blocked[0][i]: the part, 0 to 1, of the rays around +w from point begin + i that is blocked,
+    // blocked[0][i]: the part, 0 to 1 (a little more where a cell rounds to more lines than it
+    // covers), of the rays around +w from point begin + i that is blocked,
     // blocked[1][i] that around -w. Returns whether any is. At most kMaxLookUp points.
     //
     // cellHalfWidth 0: the ray along w alone. Otherwise all rays of the direction's cell, a square
