@@ -188,6 +188,10 @@ int run(int argc, char** argv)
         command->add_option("FILE", file, "Told by its content, not its name")->required();
         command->add_flag("--json", json, "As JSON");
     }
+    std::filesystem::path sheet;
+    inspectCommand->add_option("--png", sheet,
+                               "Draw a compiled asset: the mesh, shells of its field, their sides "
+                               "and errors; an environment's map");
 
     if (argc > 1 && argv[1][0] != '-')
         if (const std::string wrong = checkCommand(app, argv[1]); !wrong.empty()) {
@@ -212,7 +216,7 @@ int run(int argc, char** argv)
         return runEnvironment(environment);
     if (*buildCommand)
         return runBuild(build);
-    return *inspectCommand ? runInspect(file, json) : runValidate(file, json);
+    return *inspectCommand ? runInspect(file, json, sheet) : runValidate(file, json);
 }
 
 } // namespace

@@ -2,54 +2,15 @@
 
 #include "assetc/bake/directions.h"
 #include "assetc/embree_scene.h"
+#include "assetc/trace_visibility.h"
 #include "shaders/shared/field.h"
 
-#include <glm/gtc/constants.hpp>
-#include <limits>
 #include <random>
 #include <tbb/parallel_for.h>
 
 namespace penumbra {
 
 namespace {
-
-constexpr std::size_t kPacket = 16;
-
-// Visibility at a point in SH: unoccluded minus the blocked directions.
-Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
-                    const std::vector<Sh4>& basis)
-{
-    std::array<double, 16> blocked{};
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    for (std::size_t first = 0; first < directions.size(); first += kPacket) {
-        alignas(64) RTCRay16 rays{};
-        alignas(64) std::array<int, kPacket> valid{};
-        const std::size_t count = std::min(kPacket, directions.size() - first);
-        for (std::size_t k = 0; k < count; ++k) {
-            const vec3 d = directions[first + k];
-            valid[k] = -1;
-            rays.org_x[k] = origin.x;
-            rays.org_y[k] = origin.y;
-            rays.org_z[k] = origin.z;
-            rays.dir_x[k] = d.x;
-            rays.dir_y[k] = d.y;
-            rays.dir_z[k] = d.z;
-            rays.tfar[k] = std::numeric_limits<float>::infinity();
-            rays.mask[k] = ~0u;
-        }
-        rtcOccluded16(valid.data(), scene, &context, &rays);
-        for (std::size_t k = 0; k < count; ++k)
-            if (rays.tfar[k] < 0) // Embree's mark of a hit
-                for (std::size_t i = 0; i < blocked.size(); ++i)
-                    blocked[i] += basis[first + k].c[i];
-    }
-    Sh4 visibility{};
-    const double weight = 4 * glm::pi<double>() / static_cast<double>(directions.size());
-    for (std::size_t i = 0; i < blocked.size(); ++i)
-        visibility.c[i] = static_cast<float>((i == 0 ? kSqrt4Pi : 0.0) - weight * blocked[i]);
-    return visibility;
-}
 
 // A drawn node: where it lies and what was baked there.
 struct Sample {

@@ -111,6 +111,8 @@ ShadowField quantiseField(const FieldSamples& samples)
         for (std::size_t i = first; i < first + count; ++i)
             for (std::size_t k = 0; k < kFieldCoefficients; ++k) {
                 const float steps = samples.nodes[i].c[k] / (decay * field.bandScale[bandOf(k)]);
+                PENUMBRA_ASSERT(std::isfinite(steps), "node {}, coefficient {} is {}", i, k,
+                                samples.nodes[i].c[k]);
                 field.texels[kFieldCoefficients * i + k] =
                     static_cast<std::uint8_t>(std::clamp(std::lround(steps) + 128L, 1L, 255L));
             }

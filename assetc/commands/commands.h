@@ -37,8 +37,8 @@ struct LightArguments {
 int runLight(const LightArguments& arguments);
 
 // Any kind of file, told by its content: compiled assets, sources, manifests. A source is valid if
-// it can be read.
-int runInspect(const std::filesystem::path& file, bool json);
+// it can be read. `sheet`: a picture of a compiled asset is written there, .png; none where empty.
+int runInspect(const std::filesystem::path& file, bool json, const std::filesystem::path& sheet);
 int runValidate(const std::filesystem::path& file, bool json);
 
 // True where no report is asked for, or one that ends in .json and is none of `others`; otherwise

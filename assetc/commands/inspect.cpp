@@ -1,6 +1,8 @@
 #include "assetc/commands/commands.h"
 #include "assetc/environment.h"
 #include "assetc/report.h"
+#include "assetc/sheet/contact_sheet.h"
+#include "assetc/sheet/png.h"
 #include "assetc/source_report.h"
 #include "runtime/file.h"
 
@@ -11,10 +13,17 @@ namespace penumbra {
 
 namespace {
 
+struct InspectOptions {
+    bool json = false;
+    bool sheet = false;
+};
+
 struct Inspection {
     std::string what;            // the file is, empty where it cannot be read
     std::string text;            // about a valid file
     std::vector<Error> problems; // without the file's name; none: valid
+    std::optional<Canvas> sheet; // of a valid asset, where one was asked for
+    std::string sheetText;       // what is on it
 };
 
 // Messages of importers begin with the file's name, which our callers put there themselves.
@@ -24,20 +33,34 @@ Error withoutName(const Error& error, const std::filesystem::path& file)
     return {error.message.starts_with(name) ? error.message.substr(name.size()) : error.message};
 }
 
-void inspectMeshAsset(std::span<const std::byte> bytes, bool json, Inspection& result)
+void inspectMeshAsset(std::span<const std::byte> bytes, const InspectOptions& options,
+                      Inspection& result)
 {
-    if (const auto mesh = decodeMeshAsset(bytes))
-        result.text = describeAsset(*mesh, bytes.size(), json);
-    else
+    const auto mesh = decodeMeshAsset(bytes);
+    if (!mesh) {
         result.problems = checkMeshAsset(bytes); // all of them
+        return;
+    }
+    result.text = describeAsset(*mesh, bytes.size(), options.json);
+    if (options.sheet) {
+        result.sheet = drawMeshSheet(*mesh, bytes.size());
+        result.sheetText = kMeshSheetText;
+    }
 }
 
-void inspectEnvironment(std::span<const std::byte> bytes, bool json, Inspection& result)
+void inspectEnvironment(std::span<const std::byte> bytes, const InspectOptions& options,
+                        Inspection& result)
 {
-    if (const auto environment = decodeEnvironment(bytes))
-        result.text = describeEnvironment(*environment, bytes.size(), json);
-    else
+    const auto environment = decodeEnvironment(bytes);
+    if (!environment) {
         result.problems.push_back(environment.error());
+        return;
+    }
+    result.text = describeEnvironment(*environment, bytes.size(), options.json);
+    if (options.sheet) {
+        result.sheet = drawEnvironmentSheet(*environment, bytes.size());
+        result.sheetText = kEnvironmentSheetText;
+    }
 }
 
 void inspectSource(const std::filesystem::path& path, const RecognisedFile& file, std::size_t bytes,
@@ -59,7 +82,7 @@ void inspectSource(const std::filesystem::path& path, const RecognisedFile& file
     }
 }
 
-Inspection inspectFile(const std::filesystem::path& path, bool json)
+Inspection inspectFile(const std::filesystem::path& path, const InspectOptions& options)
 {
     Inspection result;
     const auto bytes = readFile(path, kMaxMeshAssetBytes);
@@ -71,15 +94,15 @@ Inspection inspectFile(const std::filesystem::path& path, bool json)
     result.what = file.what;
     switch (file.type) {
     case FileType::MeshAsset:
-        inspectMeshAsset(*bytes, json, result);
+        inspectMeshAsset(*bytes, options, result);
         break;
     case FileType::Environment:
-        inspectEnvironment(*bytes, json, result);
+        inspectEnvironment(*bytes, options, result);
         break;
     case FileType::MeshSource:
     case FileType::EnvironmentSource:
     case FileType::Manifest:
-        inspectSource(path, file, bytes->size(), json, result);
+        inspectSource(path, file, bytes->size(), options.json, result);
         break;
     case FileType::Other:
         result.problems.push_back({fileTypeText(file)});
@@ -92,20 +115,37 @@ Inspection inspectFile(const std::filesystem::path& path, bool json)
 
 } // namespace
 
-int runInspect(const std::filesystem::path& file, bool json)
+int runInspect(const std::filesystem::path& file, bool json, const std::filesystem::path& sheet)
 {
-    const Inspection inspection = inspectFile(file, json);
+    if (!sheet.empty() && !checkOutput(file, sheet, ".png"))
+        return kExitUsage;
+    const Inspection inspection = inspectFile(file, {json, !sheet.empty()});
     if (!inspection.problems.empty()) {
         spdlog::error("{}: {}", file.string(), inspection.problems.front().message);
         return kExitInput;
     }
+    if (!sheet.empty()) {
+        if (!inspection.sheet) {
+            spdlog::error("{}: {}; --png draws compiled assets only: compile it first",
+                          file.string(), inspection.what);
+            return kExitInput;
+        }
+        if (const auto written =
+                writeFile(sheet, std::span<const std::byte>(encodePng(*inspection.sheet)));
+            !written) {
+            spdlog::error("{}", written.error().message);
+            return kExitInput;
+        }
+    }
     fmt::print("{}", inspection.text);
+    if (!sheet.empty() && !json)
+        fmt::print("picture   {}: {}\n", sheet.string(), inspection.sheetText);
     return kExitDone;
 }
 
 int runValidate(const std::filesystem::path& file, bool json)
 {
-    const Inspection inspection = inspectFile(file, false);
+    const Inspection inspection = inspectFile(file, {});
     const bool valid = inspection.problems.empty();
     if (json) {
         nlohmann::ordered_json report = {

@@ -12,7 +12,7 @@ namespace penumbra {
 RadianceSh SphereEmitter::radianceAt(vec3 position) const
 {
     const double distance = std::max<double>(glm::length(glm::dvec3(position)), m_radius);
-    const double s2 = m_radius * m_radius / (distance * distance);
+    const double sine = m_radius / distance, s2 = sine * sine; // at most 1
     const double c = std::sqrt(1 - s2);
     const double twoPi = 2 * std::numbers::pi;
     const vec4 zonal(twoPi * s2 / (1 + c), twoPi * s2 / 2, twoPi * c * s2 / 2,

@@ -1,0 +1,34 @@
+#include "assetc/sheet/png.h"
+
+// stb_image_write, private to this file.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace penumbra {
+
+std::vector<std::byte> encodePng(const Canvas& canvas)
+{
+    static_assert(sizeof(Color) == 3);
+    std::vector<std::byte> bytes;
+    const auto append = [](void* context, void* data, int size) {
+        auto& out = *static_cast<std::vector<std::byte>*>(context);
+        const auto* begin = static_cast<const std::byte*>(data);
+        out.insert(out.end(), begin, begin + size);
+    };
+    const int written = stbi_write_png_to_func(append, &bytes, canvas.width(), canvas.height(), 3,
+                                               canvas.pixels().data(), 3 * canvas.width());
+    PENUMBRA_ASSERT(written != 0, "stb_image_write refused {} x {}", canvas.width(),
+                    canvas.height());
+    return bytes;
+}
+
+} // namespace penumbra

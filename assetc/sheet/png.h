@@ -1,0 +1,11 @@
+#pragma once
+
+#include "assetc/sheet/canvas.h"
+
+#include <cstddef>
+
+namespace penumbra {
+
+std::vector<std::byte> encodePng(const Canvas& canvas);
+
+} // namespace penumbra

@@ -1,0 +1,16 @@
+// Visibility by tracing rays: what the bake and its field are measured against.
+#pragma once
+
+#include "shaders/shared/sh.h"
+
+#include <embree3/rtcore.h>
+#include <vector>
+
+namespace penumbra {
+
+// Visibility at a point in SH: unoccluded minus the blocked directions. `directions` cover the
+// sphere evenly, `basis` is shBasis of each.
+Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
+                    const std::vector<Sh4>& basis);
+
+} // namespace penumbra
