@@ -43,10 +43,13 @@ CompileOptions readMeshOptions(const JsonReader& options)
 {
     CompileOptions result;
     BakeOptions& bake = result.bake;
-    options.refuseOthers({"shells", "maxSide", "directions", "threshold", "targetError", "field"});
+    options.refuseOthers(
+        {"shells", "maxSide", "directions", "threshold", "targetError", "field", "lods"});
     readFieldOptions(options, bake.shells, bake.side, bake.directions, result.adaptThreshold);
     if (options.has("targetError"))
         result.targetError = options.number("targetError", 1e-4f, 1);
+    if (options.has("lods"))
+        result.lods = wholeNumber(options.member("lods"), 0, kMaxMeshLods);
     if (options.has("field"))
         bake.field = options.member("field").asFlag();
     return result;

@@ -120,6 +120,19 @@ TEST_F(Light, SphereIrradianceIsTheClosedForm)
     RecordProperty("worst", std::to_string(worst));
 }
 
+// On the surface half the sky is the light, from everywhere alike: pi L, one byte per coefficient
+// 0.
+TEST_F(Light, SphereIsEvenOnItsSurface)
+{
+    const MeshAsset mesh =
+        stored(R"({"version":1,"type":"sphere","radius":0.1,"radiance":[10,10,10]})");
+    const LightFieldReader reader(*mesh.field);
+    std::mt19937 random(2);
+    for (int i = 0; i < 20; ++i)
+        EXPECT_NEAR(reader.radiance(0.1f * randomDirection(random)).c[0], 10 * std::sqrt(kPi),
+                    0.02f * 10 * std::sqrt(kPi));
+}
+
 TEST_F(Light, RectangleIrradianceIsTheClosedForm)
 {
     const vec2 size(2, 1);

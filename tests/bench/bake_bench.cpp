@@ -1,8 +1,9 @@
-// bake/occlusion/TRIANGLES/VARIANT: an occlusion field of 32 shells of 65² nodes, 1,024 directions.
-//   line_space     bakeMesh: the same nodes, self-visibility of the vertices and the probes besides
-//   embree_naive   one node at a time, its directions in packets of 16 as they come
-//   embree_best    one direction at a time, 4 x 4 neighbouring nodes in a packet
-// Rays that cannot meet the bounding sphere are not traced.
+// bake/occlusion/TRIANGLES/VARIANT: an occlusion field as `assetc bake` makes it, 1,024 directions.
+//   line_space     bakeMesh
+//   embree_naive   one point at a time, its directions in packets of 16 as they come
+//   embree_best    one direction at a time, 4 x 4 neighbouring nodes in a packet; rays that cannot
+//                  meet the bounding sphere are not traced
+// All for the same points: the nodes of the shells, the probes between them and the vertices.
 #include "assetc/bake.h"
 #include "assetc/bake/directions.h"
 #include "assetc/embree_scene.h"
@@ -23,7 +24,8 @@ constexpr std::uint32_t kDirections = 1024;
 
 struct Nodes {
     ShadowField head;
-    std::vector<vec3> positions; // [shell][y][x]
+    std::vector<vec3> positions; // [shell][y][x], then probes and vertices
+    std::size_t nodes = 0;       // of the shells
 };
 
 Nodes fieldNodes(const MeshAsset& mesh)
@@ -43,6 +45,13 @@ Nodes fieldNodes(const MeshAsset& mesh)
                                                         octahedralDirection(uv));
         }
     }
+    out.nodes = out.positions.size();
+    const PointSet probes = drawProbes(out.head).points.points;
+    for (std::size_t i = 0; i < probes.size(); ++i)
+        out.positions.push_back(sphere.center +
+                                sphere.radius * vec3(probes.x[i], probes.y[i], probes.z[i]));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+        out.positions.push_back(mesh.positions[i] + 1e-3f * sphere.radius * mesh.normals[i]);
     return out;
 }
 
@@ -122,8 +131,6 @@ void traceNaive(const EmbreeScene& scene, const Nodes& nodes, std::vector<Sh4>& 
             packet.trace(scene.handle(), false, [&](std::uint32_t d) { addTo(sums[i], basis[d]); });
         };
         for (std::uint32_t d = 0; d < kDirections; ++d) {
-            if (!meetsSphere(nodes.head, nodes.positions[i], directions[d]))
-                continue;
             packet.add(nodes.positions[i], directions[d], d);
             if (packet.count == 16)
                 flush();
@@ -147,6 +154,18 @@ void traceBest(const EmbreeScene& scene, const Nodes& nodes, std::vector<Sh4>& s
                 tiles.push_back({first, side, x, y});
         first += side * side;
     }
+    const std::size_t others = (nodes.positions.size() - nodes.nodes + 15) / 16;
+    tbb::parallel_for(std::size_t{0}, others, [&](std::size_t group) {
+        const std::size_t begin = nodes.nodes + 16 * group;
+        const std::size_t end = std::min(begin + 16, nodes.positions.size());
+        Packet packet;
+        for (std::uint32_t d = 0; d < kDirections; ++d) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (meetsSphere(nodes.head, nodes.positions[i], directions[d]))
+                    packet.add(nodes.positions[i], directions[d], static_cast<std::uint32_t>(i));
+            packet.trace(scene.handle(), true, [&](std::uint32_t i) { addTo(sums[i], basis[d]); });
+        }
+    });
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t t) {
         const Tile tile = tiles[t];
         Packet packet;
