@@ -3,8 +3,8 @@
 // p is blocked along w if the farthest depth on its line lies beyond p.w, and along -w if the
 // nearest lies before it. Depths are interpolated between lines. One raster serves every sample of
 // every shell, inside the bounding sphere too, and every vertex. Outside the sphere a sample asks
-// for the whole cell of the sphere that a direction stands for, as a square of lines: a fifth of
-// the noise. Deterministic for any thread count.
+// for the whole cell of the sphere that a direction stands for, as a square of lines: a half to
+// a fifth of the noise. Deterministic for any thread count.
 #pragma once
 
 #include "assetc/bake/field_samples.h"

@@ -9,8 +9,6 @@ namespace penumbra {
 
 namespace {
 
-constexpr float kInside = -0.9995f * kSqrt4Pi; // c_0 of a point that sees nothing
-
 // A field as the GPU holds it: one side on all shells, [y][x][shell], coefficients over g(r).
 class UniformField {
 public:
@@ -122,7 +120,7 @@ FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
     Collector total, angular, radial, quantisation, directions, bandLimit;
     FieldErrors errors;
     for (const Probe& probe : probes) {
-        if (std::min({probe.exact.c[0], probe.low.c[0], probe.high.c[0]}) < kInside)
+        if (std::min({probe.exact.c[0], probe.low.c[0], probe.high.c[0]}) < kSeesNothing)
             continue;
         ++errors.points;
         const float lowShell = std::floor(probe.shell), t = probe.shell - lowShell;

@@ -42,8 +42,9 @@ struct Receivers {
     std::vector<Sh4> blockedByOdd; // [points] where wanted: the part of every other direction
 };
 
-// Outside this radius a point asks for the whole cell of a direction, which has less than a quarter
-// of the noise; inside, what is blocked lies at too many distances.
+// Outside this radius a point asks for the whole cell of a direction, which has half of the noise
+// there and a fifth far away (docs/decisions/0006); inside, what is blocked lies at too many
+// distances.
 constexpr float kCellRadius = 1.03f;
 
 // The order of additions depends on nothing but the point, so any thread count gives the same bits.

@@ -18,6 +18,9 @@ struct FieldSamples {
     std::vector<bool> inside;
 };
 
+// c_0 of a point that sees nothing, but for the rounding of the sum over directions.
+PENUMBRA_CONST float kSeesNothing = -0.9995f * kSqrt4Pi;
+
 // Index of a grid's first node; grids are counted as in fieldGrid (assets/shadow_field.h).
 std::size_t firstNode(const ShadowField& field, std::size_t grid);
 

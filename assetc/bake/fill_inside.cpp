@@ -9,8 +9,6 @@ namespace penumbra {
 
 namespace {
 
-constexpr float kBlocked = -0.9995f * kSqrt4Pi; // c_0 of a node that sees nothing, up to rounding
-
 // The up to 6 neighbours of a node: along u and v, over the folds of the octahedral map, and the
 // nearest ones on the next shells.
 class Lattice {
@@ -75,7 +73,7 @@ void fillInside(FieldSamples& field)
     field.inside.assign(count, false);
     std::vector<std::size_t> layer;
     for (std::size_t i = 0; i < count; ++i)
-        field.inside[i] = field.nodes[i].c[0] < kBlocked;
+        field.inside[i] = field.nodes[i].c[0] < kSeesNothing;
     std::vector<bool> known = field.inside;
     known.flip();
     std::vector<bool> queued = known;
