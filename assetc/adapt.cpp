@@ -1,8 +1,10 @@
 #include "assetc/adapt.h"
 
+#include "assetc/fit_shells.h"
 #include "shaders/shared/field.h"
 
 #include <algorithm>
+#include <atomic>
 #include <glm/gtc/constants.hpp>
 #include <optional>
 #include <span>
@@ -66,6 +68,9 @@ Grid halved(const Grid& grid, std::uint32_t side, bool mean)
     return out;
 }
 
+// After eight the sum of squares changes by less than a thousandth.
+constexpr int kFitSteps = 8;
+
 class Adapter {
 public:
     Adapter(const FieldSamples& field, const AdaptLimit& limit) : m_field(field)
@@ -98,6 +103,39 @@ public:
             for (std::size_t s = from + 1; s < to; ++s)
                 m_adapted[s].side = 0;
             from = to;
+        }
+    }
+
+    // Moves the kept nodes to where all nodes are met best, if every node stays below the limit.
+    void fit()
+    {
+        std::vector<ShellGrids> fitted(m_fields, ShellGrids(m_shells));
+        std::vector<float> worst(m_shells, 0);
+        std::atomic<bool> fits = true;
+        for (std::size_t f = 0; f < m_fields; ++f) {
+            ShellGrids& kept = fitted[f];
+            for (std::size_t s = 0; s < m_shells; ++s)
+                if (m_adapted[s].side > 0)
+                    kept[s] = m_adapted[s].grids[f];
+            fitShells(m_field, f, kept, kFitSteps);
+            tbb::parallel_for(std::size_t{0}, m_shells, [&](std::size_t s) {
+                std::size_t from = s, to = s;
+                while (kept[from].empty())
+                    --from;
+                while (kept[to].empty())
+                    ++to;
+                const auto largest = error(f, s, between(kept[from], from, kept[to], to, s));
+                if (!largest)
+                    fits = false;
+                worst[s] = std::max(worst[s], largest.value_or(0));
+            });
+        }
+        if (!fits)
+            return;
+        for (std::size_t s = 0; s < m_shells; ++s) {
+            m_adapted[s].worst = worst[s];
+            for (std::size_t f = 0; f < m_fields && m_adapted[s].side > 0; ++f)
+                m_adapted[s].grids[f] = std::move(fitted[f][s]);
         }
     }
 
@@ -180,24 +218,33 @@ private:
         return adapted;
     }
 
+    // What readers make of shell s from the grids of the kept ones around it, or of its own: linear
+    // in the quantised values, which are the coefficients over g(r).
+    [[nodiscard]] Grid between(const Grid& low, std::size_t from, const Grid& high, std::size_t to,
+                               std::size_t s) const
+    {
+        const std::uint32_t side = m_field.head.shellSides[s];
+        Grid value = refineNodes(low, sideOf(low), side);
+        if (from == to)
+            return value;
+        const Grid above = refineNodes(high, sideOf(high), side);
+        const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
+        const float a = (1 - t) * m_decay[s] / m_decay[from], b = t * m_decay[s] / m_decay[to];
+        for (std::size_t i = 0; i < value.size(); ++i)
+            for (int k = 0; k < 16; ++k)
+                value[i].c[k] = a * value[i].c[k] + b * above[i].c[k];
+        return value;
+    }
+
     // Whether all shells between two kept ones are close enough to what lies between those.
     [[nodiscard]] bool canDropBetween(std::size_t from, std::size_t to)
     {
         std::vector<char> fits(to - from - 1, 1);
         std::vector<float> worst(to - from - 1, 0);
         tbb::parallel_for(from + 1, to, [&](std::size_t s) {
-            const std::uint32_t side = m_field.head.shellSides[s];
-            const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
             for (std::size_t f = 0; f < m_fields; ++f) {
-                Grid value = refineNodes(m_adapted[from].grids[f], m_adapted[from].side, side);
-                const Grid high = refineNodes(m_adapted[to].grids[f], m_adapted[to].side, side);
-                // Linear in the quantised values, which are the coefficients over g(r).
-                const float a = (1 - t) * m_decay[s] / m_decay[from];
-                const float b = t * m_decay[s] / m_decay[to];
-                for (std::size_t i = 0; i < value.size(); ++i)
-                    for (int k = 0; k < 16; ++k)
-                        value[i].c[k] = a * value[i].c[k] + b * high[i].c[k];
-                const auto largest = error(f, s, value);
+                const auto largest = error(
+                    f, s, between(m_adapted[from].grids[f], from, m_adapted[to].grids[f], to, s));
                 fits[s - from - 1] = largest.has_value() ? fits[s - from - 1] : 0;
                 worst[s - from - 1] = std::max(worst[s - from - 1], largest.value_or(0));
             }
@@ -223,6 +270,7 @@ AdaptReport adaptShells(FieldSamples& field, const AdaptLimit& limit)
     Adapter adapter(field, limit);
     adapter.chooseSides();
     adapter.dropShells();
+    adapter.fit();
     return adapter.write(field);
 }
 

@@ -34,8 +34,8 @@ struct AdaptReport {
 //     Error = 1 / (4 pi) integral |sum_g (O'_g - O_g) Psi_g(w)| dw,
 // by the 32-point rule. Nodes inside the object do not count. Sides are 2^k + 1, so the coarser
 // grid's nodes are nodes of the finer one; they take the value there or the mean around it, as in
-// the paper, whichever errs less. All channels and frames of a shell keep one side.
-//
+// the paper, whichever errs less. All channels and frames of a shell keep one side. In the end the
+// nodes that are left move to where they meet the first grid best (assetc/fit_shells.h).
 AdaptReport adaptShells(FieldSamples& field, const AdaptLimit& limit);
 
 } // namespace penumbra

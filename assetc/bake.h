@@ -19,12 +19,15 @@ namespace penumbra {
 // from two radii on it errs by less than half of the default threshold (docs/decisions/0006).
 std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side);
 
+// Pixels across the bounding sphere that err no more than so many directions do: 384 for up to
+// 1,024, from there on with their square root, at most 1,024.
+std::uint32_t rasterSideFor(std::uint32_t directions);
+
 struct BakeOptions {
     std::uint32_t shells = 32;
     std::uint32_t side = 65;         // 2^k + 1
     std::uint32_t directions = 1024; // even
-    std::uint32_t rasterSide = 384;  // pixels across the bounding sphere; 512 takes 1.5 times as
-                                     // long and differs at single nodes beside surfaces
+    std::uint32_t rasterSide = 0;    // pixels across the bounding sphere; 0: rasterSideFor
     bool field = true;
 };
 

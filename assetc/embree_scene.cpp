@@ -20,6 +20,8 @@ EmbreeScene::EmbreeScene(std::span<const vec3> positions, std::span<const std::u
                     static_cast<int>(rtcGetDeviceError(m_device)));
     std::copy(positions.begin(), positions.end(), static_cast<vec3*>(vertexBuffer));
     std::copy(indices.begin(), indices.end(), static_cast<std::uint32_t*>(indexBuffer));
+    m_positions = static_cast<const vec3*>(vertexBuffer);
+    m_indices = static_cast<const std::uint32_t*>(indexBuffer);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(m_scene, geometry);
     rtcReleaseGeometry(geometry);

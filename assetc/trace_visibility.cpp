@@ -13,8 +13,8 @@ constexpr std::size_t kPacket = 16;
 
 } // namespace
 
-Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
-                    const std::vector<Sh4>& basis)
+Sh4 traceBlocked(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
+                 const std::vector<Sh4>& basis)
 {
     std::array<double, 16> blocked{};
     RTCIntersectContext context;
@@ -41,10 +41,20 @@ Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& direct
                 for (std::size_t i = 0; i < blocked.size(); ++i)
                     blocked[i] += basis[first + k].c[i];
     }
+    Sh4 sum{};
+    for (std::size_t i = 0; i < blocked.size(); ++i)
+        sum.c[i] = static_cast<float>(blocked[i]);
+    return sum;
+}
+
+Sh4 traceVisibility(RTCScene scene, vec3 origin, const std::vector<vec3>& directions,
+                    const std::vector<Sh4>& basis)
+{
+    const Sh4 blocked = traceBlocked(scene, origin, directions, basis);
     Sh4 visibility{};
     const double weight = 4 * glm::pi<double>() / static_cast<double>(directions.size());
-    for (std::size_t i = 0; i < blocked.size(); ++i)
-        visibility.c[i] = static_cast<float>((i == 0 ? kSqrt4Pi : 0.0) - weight * blocked[i]);
+    for (int i = 0; i < 16; ++i)
+        visibility.c[i] = static_cast<float>((i == 0 ? kSqrt4Pi : 0.0) - weight * blocked.c[i]);
     return visibility;
 }
 

@@ -2,13 +2,17 @@
 // (assetc/bake/line_space.h).
 #include "assetc/bake.h"
 
+#include "assetc/bake/beside_surface.h"
 #include "assetc/bake/directions.h"
 #include "assetc/bake/fill_inside.h"
 #include "assetc/bake/point_blocks.h"
+#include "assetc/bake/target_clones.h"
+#include "assetc/trace_visibility.h"
 #include "assets/bounding_sphere.h"
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <glm/gtc/constants.hpp>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -17,18 +21,26 @@ namespace penumbra {
 
 namespace {
 
-constexpr std::size_t kBatch =
-    16; // direction pairs rasterised before looking up: 16 x 1 MiB of lines
+// Direction pairs rasterised before looking up: their lines, 1.2 MB each, stay in the caches.
+constexpr std::size_t kBatch = 4; // even: see accumulate
+
+// Of a raster's pixel: so close to the surface lie one node in a hundred and two thirds of the
+// squared error.
+constexpr float kTracedWithin = 0.2f;
 
 struct BakeDirections {
     std::vector<vec3> directions; // antipodal halves
-    std::vector<Sh4> basis;
-    float cellHalfWidth = 0; // of the square with the solid angle of a direction
+    std::vector<Sh4> basis;       // times the solid angle of a direction
+    float cellHalfWidth = 0;      // of the square with the solid angle of a direction
 
     explicit BakeDirections(std::uint32_t count) : directions(bakeDirections(count))
     {
-        for (const vec3& d : directions)
+        const float weight = 4 * glm::pi<float>() / static_cast<float>(directions.size());
+        for (const vec3& d : directions) {
             basis.push_back(shBasis(d));
+            for (float& c : basis.back().c)
+                c *= weight;
+        }
         cellHalfWidth = std::sqrt(glm::pi<float>() / static_cast<float>(count));
     }
     [[nodiscard]] std::size_t pairs() const { return directions.size() / 2; }
@@ -47,40 +59,102 @@ struct Receivers {
 // distances.
 constexpr float kCellRadius = 1.03f;
 
+// Directions of one batch in which some point of a block is blocked.
+struct BlockedDirections {
+    std::size_t count = 0;
+    const float* parts[2 * kBatch]; // [points]
+    Sh4 basis[2 * kBatch];          // times the solid angle of a direction
+};
+
+// Adding nothing for a point that is free costs less than asking whether it is.
+PENUMBRA_CLONES void addBlocked(const BlockedDirections& blocked, std::size_t points, Sh4* sums)
+{
+    using Half = float __attribute__((vector_size(32))); // half of the coefficients
+    for (std::size_t p = 0; p < points; ++p) {
+        Half low, high;
+        std::memcpy(&low, sums[p].c, sizeof(Half));
+        std::memcpy(&high, sums[p].c + 8, sizeof(Half));
+        for (std::size_t b = 0; b < blocked.count; ++b) {
+            Half basisLow, basisHigh;
+            std::memcpy(&basisLow, blocked.basis[b].c, sizeof(Half));
+            std::memcpy(&basisHigh, blocked.basis[b].c + 8, sizeof(Half));
+            low += blocked.parts[b][p] * basisLow;
+            high += blocked.parts[b][p] * basisHigh;
+        }
+        std::memcpy(sums[p].c, &low, sizeof(Half));
+        std::memcpy(sums[p].c + 8, &high, sizeof(Half));
+    }
+}
+
+// Half of the directions lie below a vertex' tangent plane.
+void clearBelow(const std::vector<vec3>& normals, std::size_t begin, std::size_t count, vec3 w,
+                LineSpace::BlockedParts& parts)
+{
+    for (std::size_t p = 0; p < count; ++p) {
+        const bool above = dot(normals[begin + p], w) > 0;
+        parts[0][p] = above ? parts[0][p] : 0.0f;
+        parts[1][p] = above ? 0.0f : parts[1][p];
+    }
+}
+
 // The order of additions depends on nothing but the point, so any thread count gives the same bits.
 void accumulate(const std::vector<LineSpace>& lines, const BakeDirections& bake,
                 std::size_t firstPair, std::size_t pairs, Receivers& receivers)
 {
-    const float cellWeight = 4 * glm::pi<float>() / static_cast<float>(bake.directions.size());
     tbb::parallel_for(std::size_t{0}, receivers.points.blocks.size(), [&](std::size_t i) {
         const PointBlock& block = receivers.points.blocks[i];
         const float cell = block.nearest > kCellRadius ? bake.cellHalfWidth : 0;
-        LineSpace::BlockedParts blocked;
-        for (std::size_t b = 0; b < pairs; ++b) {
-            const std::size_t plus = firstPair + b;
-            std::vector<Sh4>& sums = plus % 2 == 1 && !receivers.blockedByOdd.empty()
-                                         ? receivers.blockedByOdd
-                                         : receivers.blocked;
-            const vec3 w = bake.directions[plus];
-            if (!mayMeetUnitSphere(block, w, cell) ||
-                !lines[b].lookUp(receivers.points.points, block.begin, block.count, cell, blocked))
-                continue;
-            for (int sign = 0; sign < 2; ++sign) {
-                const Sh4& y = bake.basis[plus + (sign == 1 ? bake.pairs() : 0)];
-                for (std::size_t p = 0; p < block.count; ++p) {
-                    const std::size_t point = block.begin + p;
-                    if (blocked[sign][p] <= 0)
+        const std::size_t sets = receivers.blockedByOdd.empty() ? 1 : 2;
+        for (std::size_t set = 0; set < sets; ++set) {
+            LineSpace::BlockedParts parts[kBatch];
+            BlockedDirections blocked;
+            for (std::size_t b = set; b < pairs; b += sets) {
+                const std::size_t plus = firstPair + b; // a batch begins with an even one
+                const vec3 w = bake.directions[plus];
+                if (!mayMeetUnitSphere(block, w, cell))
+                    continue;
+                const unsigned any = lines[b].lookUp(receivers.points.points, block.begin,
+                                                     block.count, cell, parts[b]);
+                if (any != 0 && !receivers.normals.empty())
+                    clearBelow(receivers.normals, block.begin, block.count, w, parts[b]);
+                for (const std::size_t sign : {0, 1}) {
+                    if ((any >> sign & 1) == 0)
                         continue;
-                    if (!receivers.normals.empty() &&
-                        (dot(receivers.normals[point], w) > 0) != (sign == 0))
-                        continue;
-                    const float part = blocked[sign][p] * cellWeight;
-                    for (std::size_t k = 0; k < 16; ++k)
-                        sums[point].c[k] += part * y.c[k];
+                    blocked.parts[blocked.count] = parts[b][sign];
+                    blocked.basis[blocked.count++] = bake.basis[plus + sign * bake.pairs()];
                 }
             }
+            std::vector<Sh4>& sums = set == 1 ? receivers.blockedByOdd : receivers.blocked;
+            addBlocked(blocked, block.count, sums.data() + block.begin);
         }
     });
+}
+
+// Replaces what the rasters say of points beside the surface: up to a part of a pixel from it they
+// take a point for one on the other side in many directions.
+void traceBeside(const EmbreeScene& scene, const ShadowField& field, const BakeDirections& bake,
+                 float pixel, Receivers& receivers)
+{
+    const std::vector<std::size_t> beside = pointsBeside(
+        scene, receivers.points.points, field.center, field.radius, kTracedWithin * pixel);
+    const std::size_t parts = receivers.blockedByOdd.empty() ? 1 : 2;
+    for (std::size_t part = 0; part < parts; ++part) {
+        std::vector<vec3> directions;
+        std::vector<Sh4> basis;
+        for (std::size_t i = part; i < bake.pairs(); i += parts)
+            for (const std::size_t d : {i, i + bake.pairs()}) {
+                directions.push_back(bake.directions[d]);
+                basis.push_back(bake.basis[d]);
+            }
+        std::vector<Sh4>& sums = part == 1 ? receivers.blockedByOdd : receivers.blocked;
+        const PointSet& p = receivers.points.points;
+        tbb::parallel_for(std::size_t{0}, beside.size(), [&](std::size_t k) {
+            const std::size_t i = beside[k];
+            sums[i] = traceBlocked(scene.handle(),
+                                   field.center + field.radius * vec3(p.x[i], p.y[i], p.z[i]),
+                                   directions, basis);
+        });
+    }
 }
 
 // A vertex lies on the surface that the raster knows only per line: lifted by three quarters of a
@@ -134,6 +208,12 @@ std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t si
     return sides;
 }
 
+std::uint32_t rasterSideFor(std::uint32_t directions)
+{
+    const auto side = static_cast<std::uint32_t>(10 * std::sqrt(static_cast<float>(directions)));
+    return std::clamp(side / 8 * 8, 320u, 1024u);
+}
+
 BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
                     const std::vector<std::uint32_t>& indices, const BakeOptions& options,
                     Progress& progress)
@@ -160,8 +240,10 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
     field.shellSides.assign(options.shells, 0);
     field.shellSides = bakedSides(field, options.side);
 
-    Receivers surface =
-        liftedVertices(vertices, normals, 2.0f / static_cast<float>(options.rasterSide));
+    const std::uint32_t rasterSide =
+        options.rasterSide > 0 ? options.rasterSide : rasterSideFor(options.directions);
+    const float pixel = 2.0f / static_cast<float>(rasterSide); // bounding radii
+    Receivers surface = liftedVertices(vertices, normals, pixel);
     Receivers samples, offGrid;
     std::vector<std::uint32_t> node;
     if (options.field) {
@@ -175,19 +257,25 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
     }
 
     const BakeDirections directions(options.directions);
+    const TriangleSet triangles(indices);
     tbb::enumerable_thread_specific<RasterScratch> scratch;
-    std::vector<LineSpace> lines(kBatch, LineSpace(options.rasterSide));
+    std::vector<LineSpace> lines(kBatch, LineSpace(rasterSide));
     progress.begin("bake", directions.pairs());
     for (std::size_t first = 0; first < directions.pairs(); first += kBatch) {
         const std::size_t count = std::min(kBatch, directions.pairs() - first);
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
-            lines[b].rasterise(directions.directions[first + b], vertices, indices,
+            lines[b].rasterise(directions.directions[first + b], vertices, triangles,
                                scratch.local());
         });
         accumulate(lines, directions, first, count, samples);
         accumulate(lines, directions, first, count, offGrid);
         accumulate(lines, directions, first, count, surface);
         progress.step(count);
+    }
+    if (options.field) {
+        const EmbreeScene scene(positions, indices);
+        traceBeside(scene, field, directions, pixel, samples);
+        traceBeside(scene, field, directions, pixel, offGrid);
     }
 
     for (const Sh4& blocked : surface.blocked)

@@ -1,20 +1,12 @@
 #include "assetc/bake/line_space.h"
 
+#include "assetc/bake/target_clones.h"
 #include "runtime/assert.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
-
-// One copy per instruction set, chosen when the program starts; -ffp-contract=off keeps their bits
-// equal.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define PENUMBRA_CLONES                                                                            \
-    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define PENUMBRA_CLONES
-#endif
+#include <utility>
 
 namespace penumbra {
 
@@ -22,6 +14,7 @@ namespace {
 
 constexpr int kLanes = 8;
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Ints = int __attribute__((vector_size(kLanes * sizeof(int))));
 constexpr float kNothing = std::numeric_limits<float>::max();
 constexpr float kDepthStep = 2.0f / 65535; // of a stored depth; a pixel of 512 is 128 times that
 constexpr float kBeyond = 1e9f;            // taken off the depth of a line that hits nothing
@@ -32,85 +25,150 @@ constexpr int pitchOf(int side)
     return side + 2;
 }
 
-struct Triangle {
-    float x[3], y[3], z[3]; // pixels, pixels, depth
+// Corners in pixels, pixel centres at whole numbers, and depth: [vertex].
+struct Projected {
+    const float *x, *y, *z;
 };
 
-// Widens near/far of every pixel whose centre the triangle covers. 8 pixels of a row at a time.
-inline __attribute__((always_inline)) void drawTriangle(const Triangle& t, int side, float* near,
-                                                        float* far)
-{
-    const float area =
-        (t.x[1] - t.x[0]) * (t.y[2] - t.y[0]) - (t.x[2] - t.x[0]) * (t.y[1] - t.y[0]);
-    const float minX = std::min({t.x[0], t.x[1], t.x[2]}),
-                maxX = std::max({t.x[0], t.x[1], t.x[2]});
-    const float minY = std::min({t.y[0], t.y[1], t.y[2]}),
-                maxY = std::max({t.y[0], t.y[1], t.y[2]});
-    const int x0 = std::max(0, static_cast<int>(std::ceil(minX))),
-              x1 = std::min(side - 1, static_cast<int>(maxX));
-    const int y0 = std::max(0, static_cast<int>(std::ceil(minY))),
-              y1 = std::min(side - 1, static_cast<int>(maxY));
-    if (x0 > x1 || y0 > y1 || std::abs(area) < 1e-12f)
-        return;
+// Triangles made ready to draw, in loops that compilers vectorise.
+constexpr std::size_t kSetUp = 64;
+constexpr int kClasses = 8;
+struct SetUp {
+    int pixel[kSetUp]; // the lower corner
+    int columns[kSetUp], rows[kSetUp];
+    int rowClass[kSetUp]; // see Classes
+    // Barycentric coordinate k is corner[k] at the lower corner, grows by dx[k] per pixel in x and
+    // dy[k] in y; depth likewise.
+    float corner[3][kSetUp], dx[3][kSetUp], dy[3][kSetUp];
+    float depth[kSetUp], depthDx[kSetUp], depthDy[kSetUp];
+};
 
-    // Barycentric coordinate a_k grows by dx_k per pixel in x and dy_k in y; depth is linear as
-    // well.
-    const float invArea = 1 / area;
-    float corner[3], dx[3], dy[3], depthCorner = 0, depthDx = 0, depthDy = 0;
-    for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        dx[k] = (t.y[i] - t.y[j]) * invArea;
-        dy[k] = (t.x[j] - t.x[i]) * invArea;
-        corner[k] =
-            dx[k] * (static_cast<float>(x0) - t.x[i]) + dy[k] * (static_cast<float>(y0) - t.y[i]);
-        depthCorner += corner[k] * t.z[k];
-        depthDx += dx[k] * t.z[k];
-        depthDy += dy[k] * t.z[k];
+PENUMBRA_INLINE int ceilToPixel(float at) // of coordinates above -1
+{
+    const int whole = static_cast<int>(at);
+    return whole + (at > static_cast<float>(whole) ? 1 : 0);
+}
+
+PENUMBRA_INLINE void setUpTriangles(const Projected& p, const std::uint32_t* const corners[3],
+                                    std::size_t count, int side, SetUp& out)
+{
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t a = corners[0][i], b = corners[1][i], c = corners[2][i];
+        const float xa = p.x[a], xb = p.x[b], xc = p.x[c];
+        const float ya = p.y[a], yb = p.y[b], yc = p.y[c];
+        const float za = p.z[a], zb = p.z[b], zc = p.z[c];
+        const float area = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya);
+        const int x0 = std::max(0, ceilToPixel(std::min(std::min(xa, xb), xc)));
+        const int y0 = std::max(0, ceilToPixel(std::min(std::min(ya, yb), yc)));
+        const int x1 = std::min(side - 1, static_cast<int>(std::max(std::max(xa, xb), xc)));
+        const int y1 = std::min(side - 1, static_cast<int>(std::max(std::max(ya, yb), yc)));
+        const bool empty = (x0 > x1) | (y0 > y1) | (std::abs(area) < 1e-12f);
+        out.pixel[i] = (y0 + 1) * pitchOf(side) + x0 + 1;
+        const int columns = x1 - x0 + 1, rows = y1 - y0 + 1;
+        out.columns[i] = columns;
+        out.rows[i] = rows;
+        out.rowClass[i] = empty              ? 0
+                          : columns > kLanes ? kClasses - 1
+                                             : std::min(rows, kClasses - 1);
+        const float invArea = 1 / area;
+        const auto x = static_cast<float>(x0), y = static_cast<float>(y0);
+        const float dxa = (yb - yc) * invArea, dya = (xc - xb) * invArea;
+        const float dxb = (yc - ya) * invArea, dyb = (xa - xc) * invArea;
+        const float dxc = (ya - yb) * invArea, dyc = (xb - xa) * invArea;
+        const float cornerA = dxa * (x - xb) + dya * (y - yb);
+        const float cornerB = dxb * (x - xc) + dyb * (y - yc);
+        const float cornerC = dxc * (x - xa) + dyc * (y - ya);
+        out.corner[0][i] = cornerA;
+        out.corner[1][i] = cornerB;
+        out.corner[2][i] = cornerC;
+        out.dx[0][i] = dxa;
+        out.dx[1][i] = dxb;
+        out.dx[2][i] = dxc;
+        out.dy[0][i] = dya;
+        out.dy[1][i] = dyb;
+        out.dy[2][i] = dyc;
+        out.depth[i] = cornerA * za + cornerB * zb + cornerC * zc;
+        out.depthDx[i] = dxa * za + dxb * zb + dxc * zc;
+        out.depthDy[i] = dya * za + dyb * zb + dyc * zc;
     }
+}
+
+// Widens near/far of every pixel whose centre triangle i covers, in `columns` columns from `x` on,
+// at most 8.
+PENUMBRA_INLINE void drawColumns(const SetUp& t, std::size_t i, int x, int rows, int pitch,
+                                 float* near, float* far)
+{
     const Lanes lane = {0, 1, 2, 3, 4, 5, 6, 7};
-    for (int y = y0; y <= y1; ++y) {
-        const auto down = static_cast<float>(y - y0);
-        const float row[3] = {corner[0] + down * dy[0], corner[1] + down * dy[1],
-                              corner[2] + down * dy[2]};
-        const float depthRow = depthCorner + down * depthDy;
-        for (int x = x0; x <= x1; x += kLanes) {
-            const Lanes step = lane + static_cast<float>(x - x0);
-            // Only lanes up to x1 count. Coverage is inclusive on all edges: a line on an edge hits
-            // both triangles, but for the rounding of these few operations.
-            const auto covered = (row[0] + step * dx[0] >= 0.0f) & (row[1] + step * dx[1] >= 0.0f) &
-                                 (row[2] + step * dx[2] >= 0.0f) &
-                                 (step <= static_cast<float>(x1 - x0));
-            const Lanes depth = depthRow + step * depthDx;
-            const auto pixel = static_cast<std::size_t>((y + 1) * pitchOf(side) + x + 1);
-            Lanes nearest, farthest;
-            std::memcpy(&nearest, near + pixel, sizeof(Lanes));
-            std::memcpy(&farthest, far + pixel, sizeof(Lanes));
-            nearest = (covered & (depth < nearest)) ? depth : nearest;
-            farthest = (covered & (depth > farthest)) ? depth : farthest;
-            std::memcpy(near + pixel, &nearest, sizeof(Lanes));
-            std::memcpy(far + pixel, &farthest, sizeof(Lanes));
+    const Lanes step = lane + static_cast<float>(x);
+    const auto inside = step < static_cast<float>(t.columns[i]);
+    Lanes a = t.corner[0][i] + step * t.dx[0][i], b = t.corner[1][i] + step * t.dx[1][i],
+          c = t.corner[2][i] + step * t.dx[2][i], depth = t.depth[i] + step * t.depthDx[i];
+    near += t.pixel[i] + x;
+    far += t.pixel[i] + x;
+    for (int y = 0; y < rows; ++y, near += pitch, far += pitch) {
+        // Coverage is inclusive on all edges: a line on an edge hits both triangles, but for the
+        // rounding of these few operations.
+        const auto down = static_cast<float>(y);
+        const auto covered = (a + down * t.dy[0][i] >= 0.0f) & (b + down * t.dy[1][i] >= 0.0f) &
+                             (c + down * t.dy[2][i] >= 0.0f) & inside;
+        const Lanes here = depth + down * t.depthDy[i];
+        Lanes nearest, farthest;
+        std::memcpy(&nearest, near, sizeof(Lanes));
+        std::memcpy(&farthest, far, sizeof(Lanes));
+        nearest = (covered & (here < nearest)) ? here : nearest;
+        farthest = (covered & (here > farthest)) ? here : farthest;
+        std::memcpy(near, &nearest, sizeof(Lanes));
+        std::memcpy(far, &farthest, sizeof(Lanes));
+    }
+}
+
+// A class of triangles for each count of rows, so that loops over rows end where they are expected
+// to. Class 0 covers no pixel; the last is for all that are higher than it or wider than a vector.
+struct Classes {
+    std::uint8_t members[kClasses][kSetUp];
+    std::size_t count[kClasses] = {};
+};
+
+template <int kRows>
+PENUMBRA_INLINE void drawClasses(const SetUp& t, const Classes& classes, int pitch, float* near,
+                                 float* far)
+{
+    for (std::size_t k = 0; k < classes.count[kRows]; ++k)
+        drawColumns(t, classes.members[kRows][k], 0, kRows, pitch, near, far);
+    if constexpr (kRows + 2 < kClasses)
+        drawClasses<kRows + 1>(t, classes, pitch, near, far);
+}
+
+PENUMBRA_CLONES void drawTriangles(const Projected& projected,
+                                   const std::uint32_t* const corners[3], std::size_t count,
+                                   int side, float* near, float* far)
+{
+    SetUp ready;
+    for (std::size_t first = 0; first < count; first += kSetUp) {
+        const std::size_t n = std::min(kSetUp, count - first);
+        const std::uint32_t* const from[3] = {corners[0] + first, corners[1] + first,
+                                              corners[2] + first};
+        setUpTriangles(projected, from, n, side, ready);
+        Classes classes;
+        for (std::size_t i = 0; i < n; ++i)
+            classes.members[ready.rowClass[i]][classes.count[ready.rowClass[i]]++] =
+                static_cast<std::uint8_t>(i);
+        const int pitch = pitchOf(side);
+        drawClasses<1>(ready, classes, pitch, near, far);
+        for (std::size_t k = 0; k < classes.count[kClasses - 1]; ++k) {
+            const std::size_t i = classes.members[kClasses - 1][k];
+            for (int x = 0; x < ready.columns[i]; x += kLanes)
+                drawColumns(ready, i, x, ready.rows[i], pitch, near, far);
         }
     }
 }
 
-PENUMBRA_CLONES void drawTriangles(const float* projected, const std::uint32_t* indices,
-                                   std::size_t indexCount, int side, float* near, float* far)
-{
-    for (std::size_t i = 0; i < indexCount; i += 3) {
-        Triangle t;
-        for (int k = 0; k < 3; ++k) {
-            const float* vertex =
-                projected + 3 * static_cast<std::size_t>(indices[i + static_cast<std::size_t>(k)]);
-            t.x[k] = vertex[0];
-            t.y[k] = vertex[1];
-            t.z[k] = vertex[2];
-        }
-        drawTriangle(t, side, near, far);
-    }
-}
+struct Frame { // right-handed; w along the lines
+    vec3 u, v, w;
+};
 
 struct LookUp {
-    vec3 u, v, w;
+    Frame frame;
     float side;
     const std::uint32_t* lines;
     const float *x, *y, *z; // points
@@ -122,14 +180,14 @@ struct Lines {
 };
 
 // Everything below compiles to vector code without branches.
-inline __attribute__((always_inline)) void project(const LookUp& l, std::size_t count, Lines& lines)
+PENUMBRA_INLINE void project(const LookUp& l, std::size_t count, Lines& lines)
 {
     const float half = 0.5f * l.side;
     for (std::size_t i = 0; i < count; ++i) {
         const float x = l.x[i], y = l.y[i], z = l.z[i];
-        lines.column[i] = (x * l.u.x + y * l.u.y + z * l.u.z) * half + half;
-        lines.row[i] = (x * l.v.x + y * l.v.y + z * l.v.z) * half + half;
-        lines.depth[i] = x * l.w.x + y * l.w.y + z * l.w.z;
+        lines.column[i] = (x * l.frame.u.x + y * l.frame.u.y + z * l.frame.u.z) * half + half;
+        lines.row[i] = (x * l.frame.v.x + y * l.frame.v.y + z * l.frame.v.z) * half + half;
+        lines.depth[i] = x * l.frame.w.x + y * l.frame.w.y + z * l.frame.w.z;
     }
 }
 
@@ -139,9 +197,8 @@ struct Corners {
     float hit[4][LineSpace::kMaxLookUp];
 };
 
-inline __attribute__((always_inline)) void readCorner(const std::uint32_t* raster, const int* pixel,
-                                                      std::size_t count, float* far, float* near,
-                                                      float* hit)
+PENUMBRA_INLINE void readCorner(const std::uint32_t* raster, const int* pixel, std::size_t count,
+                                float* far, float* near, float* hit)
 {
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t line = raster[pixel[i]];
@@ -154,57 +211,117 @@ inline __attribute__((always_inline)) void readCorner(const std::uint32_t* raste
     }
 }
 
+// Points whose nearest line hits something this close to them in depth, in pixels, ask the lines
+// around it as well. Surfaces steeper than 1 in 16 against the lines are missed, and depend on
+// noise.
+constexpr float kNearBand = 8;
+
+// The nearest line decides for all points; `close` lists those it does not settle, [count] at most.
+PENUMBRA_CLONES std::size_t lookUpNearest(const LookUp& l, const Lines& lines, std::size_t count,
+                                          float* __restrict plus, float* __restrict minus,
+                                          std::uint8_t* close)
+{
+    const int pitch = pitchOf(static_cast<int>(l.side));
+    const float band = kNearBand * 2 / l.side;
+    int pixel[LineSpace::kMaxLookUp], unsettled[LineSpace::kMaxLookUp];
+    for (std::size_t i = 0; i < count; ++i) {
+        // Pixel 0 of the raster with its rim covers -1 to 0.
+        const float x = std::min(std::max(lines.column[i] + 1, 0.0f), l.side + 1);
+        const float y = std::min(std::max(lines.row[i] + 1, 0.0f), l.side + 1);
+        pixel[i] = static_cast<int>(y) * pitch + static_cast<int>(x);
+    }
+    const std::uint32_t* const raster = l.lines;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t line = raster[pixel[i]];
+        const auto packedFar = static_cast<float>(static_cast<int>(line >> 16));
+        const auto packedNear = static_cast<float>(static_cast<int>(line & 0xffff));
+        const float nothing = 1 + (1 - std::min(packedFar, 1.0f)) * kBeyond;
+        const float beyondFar = packedFar * kDepthStep - nothing - lines.depth[i];
+        const float beforeNear = packedNear * kDepthStep - nothing + lines.depth[i];
+        plus[i] = beyondFar > 0 ? 1.0f : 0.0f;
+        minus[i] = beforeNear > 0 ? 1.0f : 0.0f;
+        unsettled[i] = std::min(std::abs(beyondFar), std::abs(beforeNear)) < band ? 1 : 0;
+    }
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        close[found] = static_cast<std::uint8_t>(i);
+        found += static_cast<std::size_t>(unsettled[i]);
+    }
+    return found;
+}
+
 // Depths are interpolated between the four nearest lines where all of them hit something, so that a
 // point beside a slanted surface meets it where it is; at a rim the nearest line decides. In loops
 // that compilers vectorise one by one.
-PENUMBRA_CLONES int lookUpLines(const LookUp& l, std::size_t count, float* plus, float* minus)
+PENUMBRA_CLONES void lookUpBetween(const LookUp& l, const Lines& lines, const std::uint8_t* close,
+                                   std::size_t count, float* plus, float* minus)
 {
-    Lines lines;
-    project(l, count, lines);
     int pixel[LineSpace::kMaxLookUp];
     float u[LineSpace::kMaxLookUp], v[LineSpace::kMaxLookUp];
     const int pitch = pitchOf(static_cast<int>(l.side));
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < count; ++k) {
         // From 0.5: the centre of pixel 0 of the raster with its rim lies there.
         // Up to nearer to the rim than to the last pixel.
-        const float x = std::min(std::max(lines.column[i] + 0.5f, 0.0f), l.side + 0.75f);
-        const float y = std::min(std::max(lines.row[i] + 0.5f, 0.0f), l.side + 0.75f);
-        pixel[i] = static_cast<int>(y) * pitch + static_cast<int>(x);
-        u[i] = x - static_cast<float>(static_cast<int>(x));
-        v[i] = y - static_cast<float>(static_cast<int>(y));
+        const float x = std::min(std::max(lines.column[close[k]] + 0.5f, 0.0f), l.side + 0.75f);
+        const float y = std::min(std::max(lines.row[close[k]] + 0.5f, 0.0f), l.side + 0.75f);
+        pixel[k] = static_cast<int>(y) * pitch + static_cast<int>(x);
+        u[k] = x - static_cast<float>(static_cast<int>(x));
+        v[k] = y - static_cast<float>(static_cast<int>(y));
     }
     Corners corners;
     for (int k = 0; k < 4; ++k)
         readCorner(l.lines + (k & 1) + (k >> 1) * pitch, pixel, count, corners.far[k],
                    corners.near[k], corners.hit[k]);
-    for (std::size_t i = 0; i < count; ++i) {
+    float far[LineSpace::kMaxLookUp], near[LineSpace::kMaxLookUp];
+    for (std::size_t k = 0; k < count; ++k) {
         const float hits =
-            corners.hit[0][i] * corners.hit[1][i] * corners.hit[2][i] * corners.hit[3][i];
-        const auto nearestU = static_cast<float>(static_cast<int>(u[i] + 0.5f));
-        const auto nearestV = static_cast<float>(static_cast<int>(v[i] + 0.5f));
-        const float wu = nearestU + hits * (u[i] - nearestU);
-        const float wv = nearestV + hits * (v[i] - nearestV);
-        const auto blend = [&](const float(&at)[4][LineSpace::kMaxLookUp]) {
-            return (at[0][i] * (1 - wu) + at[1][i] * wu) * (1 - wv) +
-                   (at[2][i] * (1 - wu) + at[3][i] * wu) * wv;
-        };
-        plus[i] = blend(corners.far) > lines.depth[i] ? 1.0f : 0.0f;
-        minus[i] = blend(corners.near) > -lines.depth[i] ? 1.0f : 0.0f;
+            corners.hit[0][k] * corners.hit[1][k] * corners.hit[2][k] * corners.hit[3][k];
+        const auto nearestU = static_cast<float>(static_cast<int>(u[k] + 0.5f));
+        const auto nearestV = static_cast<float>(static_cast<int>(v[k] + 0.5f));
+        const float wu = nearestU + hits * (u[k] - nearestU);
+        const float wv = nearestV + hits * (v[k] - nearestV);
+        far[k] = (corners.far[0][k] * (1 - wu) + corners.far[1][k] * wu) * (1 - wv) +
+                 (corners.far[2][k] * (1 - wu) + corners.far[3][k] * wu) * wv;
+        near[k] = (corners.near[0][k] * (1 - wu) + corners.near[1][k] * wu) * (1 - wv) +
+                  (corners.near[2][k] * (1 - wu) + corners.near[3][k] * wu) * wv;
     }
-    int any = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        plus[close[k]] = far[k] > lines.depth[close[k]] ? 1.0f : 0.0f;
+        minus[close[k]] = near[k] > -lines.depth[close[k]] ? 1.0f : 0.0f;
+    }
+}
+
+// Bit 0: some plus above 0, bit 1: some minus.
+PENUMBRA_CLONES unsigned anyOf(const float* plus, const float* minus, std::size_t count)
+{
+    unsigned any = 0;
     for (std::size_t i = 0; i < count; ++i)
-        any |= plus[i] + minus[i] > 0 ? 1 : 0;
+        any |= (plus[i] > 0 ? 1u : 0u) | (minus[i] > 0 ? 2u : 0u);
     return any;
 }
 
-PENUMBRA_CLONES int lookUpBoxes(const LookUp& l, const std::uint32_t* sums, std::size_t count,
-                                float cellHalfWidth, float* plus, float* minus)
+PENUMBRA_CLONES void projectPoints(const LookUp& l, std::size_t count, Lines& lines)
+{
+    project(l, count, lines);
+}
+
+void lookUpLines(const LookUp& l, std::size_t count, float* plus, float* minus)
+{
+    Lines lines;
+    projectPoints(l, count, lines);
+    std::uint8_t close[LineSpace::kMaxLookUp];
+    const std::size_t unsettled = lookUpNearest(l, lines, count, plus, minus, close);
+    if (unsettled > 0)
+        lookUpBetween(l, lines, close, unsettled, plus, minus);
+}
+
+PENUMBRA_CLONES void lookUpBoxes(const LookUp& l, const std::uint32_t* sums, std::size_t count,
+                                 float cellHalfWidth, float* plus, float* minus)
 {
     Lines lines;
     project(l, count, lines);
     const float side = l.side;
     const int pitch = pitchOf(static_cast<int>(side));
-    int any = 0;
     for (std::size_t i = 0; i < count; ++i) {
         // At least a pixel.
         const float half = std::max(cellHalfWidth * std::abs(lines.depth[i]) * 0.5f * side, 0.5f);
@@ -219,40 +336,72 @@ PENUMBRA_CLONES int lookUpBoxes(const LookUp& l, const std::uint32_t* sums, std:
         const float part = hits / (4 * half * half);
         plus[i] = lines.depth[i] < 0 ? part : 0.0f;
         minus[i] = lines.depth[i] < 0 ? 0.0f : part;
-        any |= part > 0 ? 1 : 0;
     }
-    return any;
 }
 
-// sums[y][x]: lines that hit something in rows below y and columns below x.
-void sumHits(const std::uint32_t* lines, int side, std::uint32_t* sums)
+// Depths to lines: 1 to 65535 for -1 to 1; the nearest with its sign turned, so that 0 means none
+// for both. sums[y][x]: lines that hit something in rows below y and columns below x. near and far
+// hold nothing again afterwards.
+PENUMBRA_CLONES void finishRaster(float* near, float* far, int side, std::uint32_t* lines,
+                                  std::uint32_t* sums)
 {
-    const auto pitch = static_cast<std::size_t>(pitchOf(side));
-    std::fill(sums, sums + pitch, 0u);
-    for (std::size_t y = 1; y < pitch; ++y) {
-        std::uint32_t row = 0;
-        sums[y * pitch] = 0;
-        for (std::size_t x = 1; x < pitch; ++x) {
-            row += lines[(y - 1) * pitch + x - 1] != 0 ? 1 : 0;
-            sums[y * pitch + x] = sums[(y - 1) * pitch + x] + row;
+    const Lanes one = Lanes{} + 1.0f, largest = Lanes{} + 65535.0f;
+    const int pitch = pitchOf(side);
+    for (int y = 0; y < side; ++y) {
+        Ints before = {};
+        for (int x = 0; x < side; x += kLanes) {
+            const int at = (y + 1) * pitch + x + 1;
+            Lanes nearest, farthest;
+            std::memcpy(&nearest, near + at, sizeof(Lanes));
+            std::memcpy(&farthest, far + at, sizeof(Lanes));
+            const Ints hit = farthest >= nearest;
+            Ints halves[2];
+            for (const int k : {0, 1}) {
+                Lanes steps = ((k == 0 ? farthest : -nearest) + 1.0f) * (1 / kDepthStep) + 0.5f;
+                steps = steps < one ? one : steps;
+                halves[k] = __builtin_convertvector(steps < largest ? steps : largest, Ints);
+            }
+            const Ints packed = (halves[0] << 16 | halves[1]) & hit;
+            std::memcpy(lines + at, &packed, sizeof(Ints));
+
+            Ints sum = -hit; // then the running sum of it
+            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 0, 1, 2, 3, 4, 5, 6});
+            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 8, 0, 1, 2, 3, 4, 5});
+            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 8, 8, 8, 0, 1, 2, 3});
+            sum += before;
+            before = Ints{} + sum[kLanes - 1];
+            Ints below;
+            std::memcpy(&below, sums + at + 1, sizeof(Ints));
+            sum += below;
+            std::memcpy(sums + at + 1 + pitch, &sum, sizeof(Ints));
+
+            nearest = Lanes{} + kNothing;
+            farthest = Lanes{} - kNothing;
+            std::memcpy(near + at, &nearest, sizeof(Lanes));
+            std::memcpy(far + at, &farthest, sizeof(Lanes));
         }
     }
 }
 
-// Depths in 1 to 65535, -1 to 1; the nearest with its sign turned, so that 0 means none for both.
-PENUMBRA_CLONES void packDepths(const float* near, const float* far, std::size_t count,
-                                std::uint32_t* lines)
+PENUMBRA_CLONES void projectVertices(const float* x, const float* y, const float* z,
+                                     std::size_t count, const Frame& f, float side, float* outX,
+                                     float* outY, float* outZ)
 {
+    const float half = 0.5f * side, centre = half - 0.5f; // pixel centres at whole numbers
     for (std::size_t i = 0; i < count; ++i) {
-        const float f = std::min(std::max((far[i] + 1.0f) / kDepthStep + 0.5f, 1.0f), 65535.0f);
-        const float n = std::min(std::max((1.0f - near[i]) / kDepthStep + 0.5f, 1.0f), 65535.0f);
-        const auto packed = static_cast<std::uint32_t>(static_cast<int>(f)) << 16 |
-                            static_cast<std::uint32_t>(static_cast<int>(n));
-        lines[i] = far[i] < near[i] ? 0u : packed;
+        outX[i] = (x[i] * f.u.x + y[i] * f.u.y + z[i] * f.u.z) * half + centre;
+        outY[i] = (x[i] * f.v.x + y[i] * f.v.y + z[i] * f.v.z) * half + centre;
+        outZ[i] = x[i] * f.w.x + y[i] * f.w.y + z[i] * f.w.z;
     }
 }
 
 } // namespace
+
+TriangleSet::TriangleSet(std::span<const std::uint32_t> indices)
+{
+    for (std::size_t i = 0; i < indices.size(); ++i)
+        corner[i % 3].push_back(indices[i]);
+}
 
 LineSpace::LineSpace(std::uint32_t side) : m_side(side)
 {
@@ -266,8 +415,8 @@ LineSpace::LineSpace(std::uint32_t side) : m_side(side)
     m_sums.resize(pixels);
 }
 
-void LineSpace::rasterise(vec3 w, const PointSet& vertices,
-                          const std::vector<std::uint32_t>& indices, RasterScratch& scratch)
+void LineSpace::rasterise(vec3 w, const PointSet& vertices, const TriangleSet& triangles,
+                          RasterScratch& scratch)
 {
     // Any frame will do; start from the axis that is least parallel to w.
     const vec3 a = glm::abs(w);
@@ -278,39 +427,35 @@ void LineSpace::rasterise(vec3 w, const PointSet& vertices,
     m_u = normalize(cross(axis, w));
     m_v = cross(w, m_u);
 
-    scratch.near.assign(m_lines.size(), kNothing);
-    scratch.far.assign(m_lines.size(), -kNothing);
-    const float half = 0.5f * static_cast<float>(m_side);
-    scratch.projected.resize(3 * vertices.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const vec3 p(vertices.x[i], vertices.y[i], vertices.z[i]);
-        scratch.projected[3 * i] =
-            dot(p, m_u) * half + half - 0.5f; // pixel centres at whole numbers
-        scratch.projected[3 * i + 1] = dot(p, m_v) * half + half - 0.5f;
-        scratch.projected[3 * i + 2] = dot(p, m_w);
+    if (scratch.near.size() != m_lines.size()) {
+        scratch.near.assign(m_lines.size(), kNothing);
+        scratch.far.assign(m_lines.size(), -kNothing);
     }
-    drawTriangles(scratch.projected.data(), indices.data(), indices.size(),
-                  static_cast<int>(m_side), scratch.near.data(), scratch.far.data());
-    packDepths(scratch.near.data(), scratch.far.data(), m_lines.size(), m_lines.data());
-    sumHits(m_lines.data(), static_cast<int>(m_side), m_sums.data());
+    for (std::vector<float>* projected : {&scratch.x, &scratch.y, &scratch.z})
+        projected->resize(vertices.size());
+    projectVertices(vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.size(),
+                    {m_u, m_v, m_w}, static_cast<float>(m_side), scratch.x.data(), scratch.y.data(),
+                    scratch.z.data());
+    const std::uint32_t* const corners[3] = {triangles.corner[0].data(), triangles.corner[1].data(),
+                                             triangles.corner[2].data()};
+    drawTriangles({scratch.x.data(), scratch.y.data(), scratch.z.data()}, corners,
+                  triangles.corner[0].size(), static_cast<int>(m_side), scratch.near.data(),
+                  scratch.far.data());
+    finishRaster(scratch.near.data(), scratch.far.data(), static_cast<int>(m_side), m_lines.data(),
+                 m_sums.data());
 }
 
-bool LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count,
-                       float cellHalfWidth, BlockedParts& blocked) const
+unsigned LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count,
+                           float cellHalfWidth, BlockedParts& blocked) const
 {
     PENUMBRA_ASSERT(count <= kMaxLookUp, "{} points at once", count);
-    const LookUp l{m_u,
-                   m_v,
-                   m_w,
-                   static_cast<float>(m_side),
-                   m_lines.data(),
-                   points.x.data() + begin,
-                   points.y.data() + begin,
-                   points.z.data() + begin};
-    const int any = cellHalfWidth == 0 ? lookUpLines(l, count, blocked[0], blocked[1])
-                                       : lookUpBoxes(l, m_sums.data(), count, cellHalfWidth,
-                                                     blocked[0], blocked[1]);
-    return any != 0;
+    const LookUp l{{m_u, m_v, m_w},         static_cast<float>(m_side), m_lines.data(),
+                   points.x.data() + begin, points.y.data() + begin,    points.z.data() + begin};
+    if (cellHalfWidth == 0)
+        lookUpLines(l, count, blocked[0], blocked[1]);
+    else
+        lookUpBoxes(l, m_sums.data(), count, cellHalfWidth, blocked[0], blocked[1]);
+    return anyOf(blocked[0], blocked[1], count);
 }
 
 } // namespace penumbra

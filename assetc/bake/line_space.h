@@ -10,6 +10,7 @@
 #include "shaders/shared/interop.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace penumbra {
@@ -20,10 +21,16 @@ struct PointSet {
     [[nodiscard]] std::size_t size() const { return x.size(); }
 };
 
+// Triangles in struct-of-arrays form: corner[k][t] is the vertex at corner k of triangle t.
+struct TriangleSet {
+    std::vector<std::uint32_t> corner[3];
+    explicit TriangleSet(std::span<const std::uint32_t> indices);
+};
+
 // Working memory of rasterise, to be kept by a thread.
 struct RasterScratch {
     std::vector<float> near, far;
-    std::vector<float> projected; // [3 * vertexCount]: pixel x, pixel y, depth
+    std::vector<float> x, y, z; // [vertexCount] projected: pixels, pixels, depth
 };
 
 class LineSpace {
@@ -32,12 +39,13 @@ public:
     explicit LineSpace(std::uint32_t side);
 
     // Rasterises the triangles (vertices inside the unit sphere) along unit direction w.
-    void rasterise(vec3 w, const PointSet& vertices, const std::vector<std::uint32_t>& indices,
+    void rasterise(vec3 w, const PointSet& vertices, const TriangleSet& triangles,
                    RasterScratch& scratch);
 
     // blocked[0][i]: the part, 0 to 1 (a little more where a cell rounds to more lines than it
     // covers), of the rays around +w from point begin + i that is blocked,
-    // blocked[1][i] that around -w. Returns whether any is. At most kMaxLookUp points.
+    // blocked[1][i] that around -w. Returns bit 0 if some ray around w is blocked, bit 1 if some
+    // around -w. At most kMaxLookUp points.
     //
     // cellHalfWidth 0: the ray along w alone. Otherwise all rays of the direction's cell, a square
     // of that half width (radians), for points well outside the bounding sphere: the ray along
@@ -46,8 +54,8 @@ public:
     // anything.
     static constexpr std::size_t kMaxLookUp = 256;
     using BlockedParts = float[2][kMaxLookUp];
-    bool lookUp(const PointSet& points, std::size_t begin, std::size_t count, float cellHalfWidth,
-                BlockedParts& blocked) const;
+    unsigned lookUp(const PointSet& points, std::size_t begin, std::size_t count,
+                    float cellHalfWidth, BlockedParts& blocked) const;
 
 private:
     std::uint32_t m_side; // pixels, a multiple of 8

@@ -57,7 +57,9 @@ TEST(AdaptShells, ThresholdIsEquationOne)
         EXPECT_EQ(field.head.shellSides[0], 9);
         EXPECT_EQ(field.head.shellSides[1], factor < 1 ? 17 : 9);
         EXPECT_EQ(field.head.shellSides[2], 9);
-        EXPECT_NEAR(report.worst, factor < 1 ? 0 : error, 1e-5f * error);
+        // The fit of the nodes left takes a little off it.
+        EXPECT_GE(report.worst, factor < 1 ? 0 : 0.9f * error);
+        EXPECT_LE(report.worst, factor < 1 ? 0 : error);
     }
 }
 
@@ -108,6 +110,35 @@ TEST(AdaptShells, DropsShellsThatTheirNeighboursGive)
         bent.nodes[81 * 2 + i].c[0] -= 0.1f;
     adaptShells(bent, {1e-4f});
     EXPECT_EQ(bent.head.shellSides, Sides(5, 9));
+}
+
+// Straight lines between values of a curve all lie on one side of it; the fit takes most of that
+// away, and moves nodes that lie twice on the octahedral map alike.
+TEST(AdaptShells, FitLeavesNoBias)
+{
+    FieldSamples field = openField(3, 33);
+    const auto curve = [](vec3 d, float shell) { return -1.2f - 0.8f * d.z * d.z - shell * shell; };
+    for (std::size_t s = 0; s < 3; ++s)
+        for (std::size_t i = 0; i < 33 * 33; ++i) {
+            const vec3 d = octahedralDirection(vec2(i % 33, i / 33) / 32.0f);
+            c0(field, s, i / 33, i % 33) =
+                decayOf(field, s) * curve(d, 0.05f * static_cast<float>(s));
+        }
+    const FieldSamples fine = field;
+    adaptShells(field, {0.01f});
+    ASSERT_LT(field.head.shellSides[0], 33);
+    const std::vector<Sh4> read = refineNodes(field, 0, 33);
+    double bias = 0, squares = 0;
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        const double off = read[i].c[0] - fine.nodes[i].c[0] / decayOf(fine, i / (33 * 33));
+        bias += off / static_cast<double>(read.size());
+        squares += off * off / static_cast<double>(read.size());
+    }
+    EXPECT_GT(squares, 0);
+    EXPECT_LT(std::abs(bias), 0.1 * std::sqrt(squares));
+    const std::uint32_t side = field.head.shellSides[0];
+    for (std::uint32_t i = 0; i < side; ++i)
+        EXPECT_FLOAT_EQ(c0(field, 0, 0, i), c0(field, 0, 0, side - 1 - i));
 }
 
 TEST(AdaptShells, ChannelsKeepOneSide)
