@@ -4,31 +4,7 @@
 #include "assetc/import/import.h"
 #include "assetc/lods.h"
 
-#include <chrono>
-
 namespace penumbra {
-
-namespace {
-
-// Appends to `times` how long its scope ran.
-class StageTimer {
-public:
-    StageTimer(std::vector<StageTime>& times, const char* stage) : m_times(times), m_stage(stage) {}
-    StageTimer(const StageTimer&) = delete;
-    StageTimer& operator=(const StageTimer&) = delete;
-    ~StageTimer()
-    {
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - m_start;
-        m_times.push_back({m_stage, elapsed.count()});
-    }
-
-private:
-    std::vector<StageTime>& m_times;
-    const char* m_stage;
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
-
-} // namespace
 
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
@@ -54,14 +30,65 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
     CompiledAsset asset;
     CompileReport& report = asset.report;
     MeshAsset& mesh = asset.mesh;
-    FieldSamples field;
-    std::vector<Probe> probes;
     mesh = std::move(imported.mesh);
     report.warnings = std::move(imported.warnings);
+    if (options.bake.field)
+        if (const auto fits = checkFieldBytes(options.bake.shells, options.bake.side, 1, place);
+            !fits)
+            return fits.error();
+    if (const auto prepared = prepareMesh(asset, place, options.encode); !prepared)
+        return prepared.error();
+
+    BakeResult baked;
+    float threshold = options.adaptThreshold;
+    if (options.targetError && options.bake.field) {
+        // Bakes finer and finer until the error is small enough; the last one is the field.
+        const StageTimer timer(report.times, "target");
+        TargetBake target =
+            bakeToError(mesh, *options.targetError, options.bake, threshold, progress);
+        baked = std::move(target.baked);
+        threshold = target.report.trials.back().threshold;
+        if (!target.report.reached)
+            report.warnings.push_back(
+                fmt::format("the error stays at {:.4f}, above {}: see the report",
+                            target.report.trials.back().error, *options.targetError));
+        report.target = std::move(target.report);
+    } else {
+        // Self-visibility of the vertices and the field of the space around.
+        const StageTimer timer(report.times, "bake");
+        baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options.bake, progress);
+    }
+    mesh.selfVisibility = std::move(baked.selfVisibility);
+    if (options.verify) {
+        const StageTimer timer(report.times, "verify");
+        report.verify = verifyBake(mesh, baked.field);
+    }
+    if (options.bake.field) {
+        // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
+        const StageTimer timer(report.times, "adapt");
+        if (threshold > 0)
+            report.adapt = adaptShells(baked.field, {threshold});
+        mesh.field = quantiseField(baked.field);
+        mesh.field->errors = measureErrors(baked.field, *mesh.field, baked.probes);
+    }
+    if (options.lods > 0) {
+        // The same surface with fewer triangles; vertices keep their self-visibility.
+        const StageTimer timer(report.times, "lods");
+        buildLods(mesh, options.lods);
+    }
+    if (const auto encoded = encodeAsset(asset, place, options.encode); !encoded)
+        return encoded.error();
+    return asset;
+}
+
+Result<void> prepareMesh(CompiledAsset& asset, const std::string& place,
+                         const MeshEncodeOptions& options)
+{
+    CompileReport& report = asset.report;
     {
         // Only triangles with an area, unit normals, no vertex twice, a submesh per material.
         const StageTimer timer(report.times, "clean");
-        const auto cleaned = cleanMesh(mesh);
+        const auto cleaned = cleanMesh(asset.mesh);
         if (!cleaned)
             return fail(cleaned.error(), place);
         report.clean = *cleaned;
@@ -69,64 +96,43 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
     {
         // Receiver clusters: 64 consecutive vertices, compact in place and normal.
         const StageTimer timer(report.times, "order");
-        report.order = orderClusters(mesh);
+        report.order = orderClusters(asset.mesh);
     }
     {
         // To the positions and normals that readers will see, so that baked and shipped shapes are
         // one.
         const StageTimer timer(report.times, "quantise");
-        if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
+        if (const auto quantised = quantizeMesh(asset.mesh, options); !quantised)
             return fail(quantised.error(), place);
     }
-    BakeOptions bake = options.bake;
-    if (const std::uint64_t bytes =
-            std::uint64_t{bake.shells} * bake.side * bake.side * kFieldCoefficients;
-        bake.field && bytes > kMaxFieldBytes)
-        return Error{fmt::format("{}: {} shells of {}² take {} bytes, at most {}; ask for fewer or "
-                                 "coarser ones",
-                                 place, bake.shells, bake.side, bytes, kMaxFieldBytes)};
-    float threshold = options.adaptThreshold;
-    if (options.targetError && bake.field) {
-        const StageTimer timer(report.times, "target");
-        report.target = reachError(mesh, *options.targetError, bake, threshold, progress);
-        if (!report.target->reached)
-            report.warnings.push_back(
-                fmt::format("the error stays at {:.4f}, above {}: see the report",
-                            report.target->trials.back().error, *options.targetError));
-    }
-    {
-        // Self-visibility of the vertices and the field of the space around.
-        const StageTimer timer(report.times, "bake");
-        BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, bake, progress);
-        mesh.selfVisibility = std::move(baked.selfVisibility);
-        field = std::move(baked.field);
-        probes = std::move(baked.probes);
-    }
-    if (options.lods > 0) {
-        // The same surface with fewer triangles; vertices keep their self-visibility.
-        const StageTimer timer(report.times, "lods");
-        buildLods(mesh, options.lods);
-    }
-    if (options.verify) {
-        const StageTimer timer(report.times, "verify");
-        report.verify = verifyBake(mesh, field);
-    }
-    if (bake.field) {
-        // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
-        const StageTimer timer(report.times, "adapt");
-        if (threshold > 0)
-            report.adapt = adaptShells(field, {threshold});
-        mesh.field = quantiseField(field);
-        mesh.field->errors = measureErrors(field, *mesh.field, probes);
-    }
-    {
-        const StageTimer timer(report.times, "encode");
-        auto bytes = encodeMeshAsset(mesh, options.encode);
-        if (!bytes)
-            return fail(bytes.error(), place);
-        asset.bytes = std::move(*bytes);
-    }
-    return asset;
+    const float size = length(asset.mesh.boundsMax - asset.mesh.boundsMin);
+    if (!(size > 4 * kMinFieldRadius && size < kMaxCoordinate)) // its bounding sphere has a field
+        return Error{fmt::format("{}: {} m across, allowed {} to {} m; scale it, its unit is the "
+                                 "metre",
+                                 place, size, 4 * kMinFieldRadius, kMaxCoordinate)};
+    return {};
+}
+
+Result<void> encodeAsset(CompiledAsset& asset, const std::string& place,
+                         const MeshEncodeOptions& options)
+{
+    const StageTimer timer(asset.report.times, "encode");
+    auto bytes = encodeMeshAsset(asset.mesh, options);
+    if (!bytes)
+        return fail(bytes.error(), place);
+    asset.bytes = std::move(*bytes);
+    return {};
+}
+
+Result<void> checkFieldBytes(std::uint64_t shells, std::uint64_t side, std::uint64_t channels,
+                             const std::string& place)
+{
+    const std::uint64_t bytes = shells * side * side * channels * kFieldCoefficients;
+    if (bytes <= kMaxFieldBytes)
+        return {};
+    return Error{fmt::format("{}: {} shells of {}² take {} bytes, at most {}; ask for fewer or "
+                             "coarser ones",
+                             place, shells, side, bytes, kMaxFieldBytes)};
 }
 
 } // namespace penumbra

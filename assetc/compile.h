@@ -6,6 +6,7 @@
 #include "assetc/import/clean.h"
 #include "assetc/import/folder.h"
 #include "assetc/order.h"
+#include "assetc/stage_timer.h"
 #include "assetc/target_error.h"
 #include "assetc/verify.h"
 #include "assets/mesh_codec.h"
@@ -25,19 +26,13 @@ struct CompileOptions {
     bool verify = false;
 };
 
-// Wall time of a stage, in the order in which they ran.
-struct StageTime {
-    const char* stage;
-    double seconds;
-};
-
 struct CompileReport {
     CleanReport clean;
     OrderReport order;
     std::optional<TargetReport> target;
     std::optional<AdaptReport> adapt;
     std::optional<VerifyReport> verify;
-    std::vector<StageTime> times;
+    std::vector<StageTime> times; // in the order in which the stages ran
     std::vector<std::string> warnings;
 };
 
@@ -56,5 +51,16 @@ Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
 // The same behind the import; `place` names the mesh in errors.
 Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& place,
                                   const CompileOptions& options, Progress& progress);
+
+// The stages that meshes and lights share, on asset.mesh; they note their times in the report.
+// Clean, order and quantise: behind it the mesh is as readers will see it.
+Result<void> prepareMesh(CompiledAsset& asset, const std::string& place,
+                         const MeshEncodeOptions& options);
+// mesh to bytes.
+Result<void> encodeAsset(CompiledAsset& asset, const std::string& place,
+                         const MeshEncodeOptions& options);
+// Error: more texels than a field may have. Before baking, which would take as long in vain.
+Result<void> checkFieldBytes(std::uint64_t shells, std::uint64_t side, std::uint64_t channels,
+                             const std::string& place);
 
 } // namespace penumbra

@@ -78,9 +78,10 @@ std::string sceneJson(const ImportedScene& scene, const std::vector<SceneAsset>&
 } // namespace
 
 Result<CompiledScene> compileScene(const std::filesystem::path& source,
-                                   const CompileOptions& options, Progress& progress)
+                                   const CompileOptions& options, Progress& progress,
+                                   std::vector<AskedFile>* asked)
 {
-    auto scene = importScene(source);
+    auto scene = importScene(source, asked);
     if (!scene)
         return scene.error();
     if (scene->meshes.empty())

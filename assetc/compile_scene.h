@@ -16,8 +16,11 @@ struct CompiledScene {
     std::vector<std::string> warnings;
 };
 
-// Same input, options and version: same bytes.
+inline constexpr const char* kSceneFile = "scene.json";
+
+// Same input, options and version: same bytes. `asked` gets the other files that the source names.
 Result<CompiledScene> compileScene(const std::filesystem::path& source,
-                                   const CompileOptions& options, Progress& progress);
+                                   const CompileOptions& options, Progress& progress,
+                                   std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -1,9 +1,8 @@
-// A triangle mesh for Embree's rays.
+// A triangle mesh for Embree's rays and distances.
 #pragma once
 
 #include "shaders/shared/interop.h"
 
-#include <array>
 #include <embree3/rtcore.h>
 #include <span>
 
@@ -19,15 +18,10 @@ public:
     ~EmbreeScene();
 
     [[nodiscard]] RTCScene handle() const { return m_scene; }
-    [[nodiscard]] std::array<vec3, 3> triangle(std::uint32_t index) const
-    {
-        const std::uint32_t* corner = m_indices + 3 * std::size_t{index};
-        return {m_positions[corner[0]], m_positions[corner[1]], m_positions[corner[2]]};
-    }
+    // From a point to the nearest triangle, at most `limit`.
+    [[nodiscard]] float distance(vec3 point, float limit) const;
 
 private:
-    const vec3* m_positions = nullptr; // Embree's copies
-    const std::uint32_t* m_indices = nullptr;
     RTCDevice m_device;
     RTCScene m_scene;
 };

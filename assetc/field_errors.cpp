@@ -1,5 +1,6 @@
 #include "assetc/field_errors.h"
 
+#include "runtime/assert.h"
 #include "shaders/shared/field.h"
 
 #include <algorithm>
@@ -44,11 +45,12 @@ private:
     std::vector<Sh4> m_nodes;
 };
 
-UniformField readBytes(const ShadowField& field)
+// `grid`: frame * channels + channel.
+UniformField readBytes(const ShadowField& field, std::size_t grid)
 {
     const std::uint32_t side = largestSide(field);
     UniformField out(field, side);
-    const std::vector<std::uint8_t> texels = refineField(field, 0);
+    const std::vector<std::uint8_t> texels = refineField(field, grid);
     const std::size_t nodes = std::size_t{side} * side;
     const vec4 scale(field.bandScale[0], field.bandScale[1], field.bandScale[2],
                      field.bandScale[3]);
@@ -62,11 +64,11 @@ UniformField readBytes(const ShadowField& field)
     return out;
 }
 
-UniformField readSamples(const FieldSamples& samples)
+UniformField readSamples(const FieldSamples& samples, std::size_t grid)
 {
     const std::uint32_t side = largestSide(samples.head);
     UniformField out(samples.head, side);
-    const std::vector<Sh4> nodes = refineNodes(samples, 0, side);
+    const std::vector<Sh4> nodes = refineNodes(samples, grid, side);
     const std::size_t perShell = std::size_t{side} * side;
     for (std::size_t s = 0; s < samples.head.shellSides.size(); ++s)
         for (std::size_t n = 0; n < perShell; ++n)
@@ -111,43 +113,113 @@ private:
     std::uint32_t m_count = 0;
 };
 
-} // namespace
+// One frame and channel: squared differences at a probe, by cause.
+class Channel {
+public:
+    Channel(const FieldSamples& samples, const ShadowField& field, std::size_t grid)
+        : m_field(field), m_bytes(readBytes(field, grid)), m_floats(readSamples(samples, grid))
+    {}
 
-FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
-                          const std::vector<Probe>& probes)
-{
-    const UniformField exactBytes = readBytes(field), floats = readSamples(samples);
-    Collector total, angular, radial, quantisation, directions, bandLimit;
-    FieldErrors errors;
-    for (const Probe& probe : probes) {
-        if (std::min({probe.exact.c[0], probe.low.c[0], probe.high.c[0]}) < kSeesNothing)
-            continue;
-        ++errors.points;
+    struct Squares {
+        float total, angular, radial, quantisation, directions;
+        float decay, lowDecay; // g(r) at the probe and on the shell below it
+    };
+    // `fade`: the exact field does not end, so what readers fade out counts in `total`.
+    [[nodiscard]] Squares at(const Probe& probe, bool fade) const
+    {
         const float lowShell = std::floor(probe.shell), t = probe.shell - lowShell;
-        const float low = shellRadius(field, static_cast<std::size_t>(lowShell));
-        const float high = shellRadius(field, static_cast<std::size_t>(lowShell) + 1);
+        const float low = shellRadius(m_field, static_cast<std::size_t>(lowShell));
+        const float high = shellRadius(m_field, static_cast<std::size_t>(lowShell) + 1);
         const float r = low * std::pow(high / low, t);
         const vec3 place = probe.direction * r;
-        total.add(squared(difference(exactBytes.sample(place, true), probe.exact)));
-        quantisation.add(
-            squared(difference(exactBytes.sample(place, false), floats.sample(place, false))));
-        angular.add(squared(difference(floats.sample(probe.direction * low, false), probe.low)));
+        const Sh4 floats = m_floats.sample(place, false);
         Sh4 between; // linear in the coefficients over g(r), as readers interpolate
         for (int k = 0; k < 16; ++k)
             between.c[k] = ((1 - t) * probe.low.c[k] / fieldDecay(low * low) +
                             t * probe.high.c[k] / fieldDecay(high * high)) *
                            fieldDecay(r * r);
-        radial.add(squared(difference(between, probe.exact)));
-        directions.add(squared(probe.noise));
-        bandLimit.add(-probe.exact.c[0] * kSqrt4Pi - squared(probe.exact));
+        return {squared(difference(m_bytes.sample(place, fade), probe.exact)),
+                squared(difference(m_floats.sample(probe.direction * low, false), probe.low)),
+                squared(difference(between, probe.exact)),
+                squared(difference(m_bytes.sample(place, false), floats)),
+                squared(probe.noise),
+                fieldDecay(r * r),
+                fieldDecay(low * low)};
     }
-    errors.total = total.result();
-    errors.angular = angular.result();
-    errors.radial = radial.result();
-    errors.quantisation = quantisation.result();
-    errors.directions = directions.result();
-    errors.bandLimit = bandLimit.result();
-    return errors;
+
+private:
+    const ShadowField& m_field;
+    UniformField m_bytes, m_floats;
+};
+
+struct Causes {
+    Collector total, angular, radial, quantisation, directions, bandLimit;
+
+    [[nodiscard]] FieldErrors result(std::uint32_t points) const
+    {
+        return {points,
+                total.result(),
+                angular.result(),
+                radial.result(),
+                quantisation.result(),
+                directions.result(),
+                bandLimit.result()};
+    }
+};
+
+} // namespace
+
+FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
+                          const std::vector<Probe>& probes)
+{
+    const Channel channel(samples, field, 0);
+    Causes causes;
+    std::uint32_t points = 0;
+    for (const Probe& probe : probes) {
+        if (std::min({probe.exact.c[0], probe.low.c[0], probe.high.c[0]}) < kSeesNothing)
+            continue;
+        ++points;
+        const Channel::Squares squares = channel.at(probe, true);
+        causes.total.add(squares.total);
+        causes.quantisation.add(squares.quantisation);
+        causes.angular.add(squares.angular);
+        causes.radial.add(squares.radial);
+        causes.directions.add(squares.directions);
+        causes.bandLimit.add(-probe.exact.c[0] * kSqrt4Pi - squared(probe.exact));
+    }
+    return causes.result(points);
+}
+
+FieldErrors measureRadianceErrors(const FieldSamples& samples, const ShadowField& field,
+                                  const std::vector<Probe>& probes, float radiance)
+{
+    const std::size_t channels = field.channels;
+    PENUMBRA_ASSERT(field.frames == 1 && probes.size() % channels == 0 && radiance > 0,
+                    "{} probes of {} channels, {} frames, radiance {}", probes.size(), channels,
+                    field.frames, radiance);
+    std::vector<Channel> grids;
+    for (std::size_t c = 0; c < channels; ++c)
+        grids.emplace_back(samples, field, c);
+    Causes causes;
+    const float part = 1 / (radiance * radiance * static_cast<float>(channels));
+    for (std::size_t i = 0; i < probes.size(); i += channels) {
+        Channel::Squares sum{};
+        for (std::size_t c = 0; c < channels; ++c) {
+            const Channel::Squares squares = grids[c].at(probes[i + c], false);
+            const float here = part / (squares.decay * squares.decay);
+            sum.total += squares.total * here;
+            sum.quantisation += squares.quantisation * here;
+            sum.angular += squares.angular * (part / (squares.lowDecay * squares.lowDecay));
+            sum.radial += squares.radial * here;
+            sum.directions += squares.directions * here;
+        }
+        causes.total.add(sum.total);
+        causes.quantisation.add(sum.quantisation);
+        causes.angular.add(sum.angular);
+        causes.radial.add(sum.radial);
+        causes.directions.add(sum.directions);
+    }
+    return causes.result(static_cast<std::uint32_t>(probes.size() / channels));
 }
 
 } // namespace penumbra

@@ -22,4 +22,12 @@ namespace penumbra {
 FieldErrors measureErrors(const FieldSamples& samples, const ShadowField& field,
                           const std::vector<Probe>& probes);
 
+// The same of a radiance field with one frame, `probes` [point][channel] in order of the channels,
+// with the radiance itself in `exact`, `low` and `high`. All points count. Errors are the root mean
+// square over directions and channels as a part of `radiance` g(r), > 0 (see AdaptLimit). Lights
+// end where their last shell is, so the fade that readers make of the last interval is none of
+// `total`. `bandLimit` is not known and stays 0.
+FieldErrors measureRadianceErrors(const FieldSamples& samples, const ShadowField& field,
+                                  const std::vector<Probe>& probes, float radiance);
+
 } // namespace penumbra

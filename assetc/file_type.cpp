@@ -64,16 +64,47 @@ RecognisedFile recogniseGlb(std::span<const std::byte> bytes)
     return {FileType::MeshAsset, document ? "a compiled mesh" : "a damaged binary glTF file", ""};
 }
 
+bool hasAll(const nlohmann::json& object, std::initializer_list<const char*> keys)
+{
+    return std::all_of(keys.begin(), keys.end(),
+                       [&](const char* key) { return object.contains(key); });
+}
+
+// The reports of all commands. Some have members of what they are about.
+RecognisedFile recogniseReport(const nlohmann::json& document)
+{
+    constexpr const char* kRead = "it is there to be read; nothing is made of it";
+    const char* what =
+        hasAll(document, {"manifest", "totals"})          ? "a report of assetc build"
+        : hasAll(document, {"source", "assets"})          ? "a report of assetc bake"
+        : hasAll(document, {"bytes", "light", "seconds"}) ? "a report of assetc light"
+        : hasAll(document, {"bytes", "seconds"})          ? "a report of assetc bake"
+        : hasAll(document, {"map", "energyShare"})        ? "a report of assetc environment"
+        : hasAll(document, {"file", "valid", "problems"}) ? "a report of assetc validate"
+        : hasAll(document, {"type", "bytes"})             ? "a report of assetc inspect"
+                                                          : nullptr;
+    return what ? RecognisedFile{FileType::Report, what, kRead} : RecognisedFile{};
+}
+
 RecognisedFile recogniseJson(std::string_view text)
 {
     const auto document = parseJson(text, kMaxJsonBytes);
     if (!document)
-        return {FileType::Other, document.error().message, "mend it"};
+        return {FileType::Other, document.error().message, "mend it there"};
     if (document->contains("asset"))
         return {FileType::MeshSource, "a glTF file", kBake};
+    if (RecognisedFile report = recogniseReport(*document); report.type == FileType::Report)
+        return report;
+    if (document->contains("entities"))
+        return {FileType::Scene, "a scene of parts", ""};
     if (document->contains("assets"))
         return {FileType::Manifest, "a manifest", "build it with assetc build"};
-    return {FileType::Other, "JSON of another program", "assetc reads glTF and its own manifests"};
+    for (const char* key : {"type", "radiance", "power", "intensity"})
+        if (document->contains(key))
+            return {FileType::LightSpec, "a light description", "compile it with assetc light"};
+    return {FileType::Other, "JSON of another program",
+            "assetc reads glTF (\"asset\"), manifests (\"assets\"), light descriptions "
+            "(\"type\") and scenes (\"entities\")"};
 }
 
 // Text whose first lines are those of an OBJ file.
@@ -116,8 +147,15 @@ RecognisedFile recogniseFile(std::span<const std::byte> bytes)
     if (looksLikeObj(text))
         return {FileType::MeshSource, "a Wavefront OBJ mesh", kBake};
     return {FileType::Other, "no file that assetc knows",
-            "it reads compiled meshes and environments, glTF, OBJ, OpenEXR, Radiance .hdr and "
-            "manifests"};
+            "it reads compiled meshes and environments, glTF, OBJ, OpenEXR, Radiance .hdr, "
+            "manifests, light descriptions and scenes"};
+}
+
+std::string otherKindText(std::span<const std::byte> bytes, FileType wanted)
+{
+    const RecognisedFile file = recogniseFile(bytes);
+    const bool known = file.bySignature || file.type != FileType::Other;
+    return known && file.type != wanted ? fileTypeText(file) : std::string();
 }
 
 std::string fileTypeText(const RecognisedFile& file)

@@ -14,6 +14,9 @@ enum class FileType {
     MeshSource,        // glTF or OBJ
     EnvironmentSource, // OpenEXR or Radiance
     Manifest,          // of assetc build
+    LightSpec,         // of assetc light
+    Scene,             // scene.json
+    Report,            // JSON that assetc wrote about files
     Other
 };
 
@@ -26,6 +29,10 @@ struct RecognisedFile {
 
 // Any bytes. Says nothing of whether the file is whole.
 RecognisedFile recogniseFile(std::span<const std::byte> bytes);
+
+// Where the bytes are beyond doubt of another kind than `wanted`: what they are, what to do with
+// them. Empty where they may be meant as the wanted kind.
+std::string otherKindText(std::span<const std::byte> bytes, FileType wanted);
 
 // "an OpenEXR picture; compile it with assetc environment".
 std::string fileTypeText(const RecognisedFile& file);

@@ -1,9 +1,12 @@
 #include "assetc/lods.h"
 
+#include "assetc/embree_scene.h"
 #include "assetc/order.h"
 
 #include <algorithm>
 #include <meshoptimizer.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 namespace penumbra {
 
@@ -49,6 +52,23 @@ MeshLod makeLevel(const MeshGeometry& full, const std::vector<std::uint32_t>& in
     return lod;
 }
 
+// The largest distance of the mesh's vertices from the level, at most `limit`: meshoptimizer's own
+// estimate knows nothing of parts that go whole.
+float distanceFrom(const MeshGeometry& level, const MeshGeometry& mesh, float limit)
+{
+    constexpr std::size_t kSamples = std::size_t{1} << 16;
+    const std::size_t step = mesh.positions.size() / kSamples + 1;
+    const EmbreeScene scene(level.positions, level.indices);
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.positions.size() / step), 0.0f,
+        [&](const tbb::blocked_range<std::size_t>& range, float largest) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                largest = std::max(largest, scene.distance(mesh.positions[i * step], limit));
+            return largest;
+        },
+        [](float a, float b) { return std::max(a, b); });
+}
+
 } // namespace
 
 void buildLods(MeshAsset& mesh, std::uint32_t count)
@@ -69,7 +89,9 @@ void buildLods(MeshAsset& mesh, std::uint32_t count)
             break;
         previous = indices.size();
         MeshLod lod = makeLevel(mesh, indices);
-        lod.error = error * scale;
+        lod.error = std::max(error * scale, distanceFrom(lod, mesh, kMaxLodError * scale));
+        if (!(lod.error < kMaxLodError * scale))
+            break;
         orderClusters(lod);
         mesh.lods.push_back(std::move(lod));
     }

@@ -178,18 +178,17 @@ int run(int argc, char** argv)
     buildCommand->add_flag("--watch", build.watch, "Build again at each change, until interrupted");
     buildCommand->add_option("--report", build.report, "Write what was done as JSON");
 
-    std::filesystem::path file;
-    bool json = false;
-    CLI::App* inspectCommand =
-        app.add_subcommand("inspect", "Say what is in a file: compiled asset, source or manifest");
+    InspectArguments inspect;
+    CLI::App* inspectCommand = app.add_subcommand(
+        "inspect", "Say what is in a file: compiled asset, scene, source, light or manifest");
     CLI::App* validateCommand = app.add_subcommand(
         "validate", "Check a file of any of these: exit code 0 valid, 1 invalid");
     for (CLI::App* command : {inspectCommand, validateCommand}) {
-        command->add_option("FILE", file, "Told by its content, not its name")->required();
-        command->add_flag("--json", json, "As JSON");
+        command->add_option("FILE", inspect.input, "Told by its content, not its name")->required();
+        command->add_flag("--json", inspect.json, "As JSON");
+        command->add_option("--report", inspect.report, "Write the same as JSON to a file");
     }
-    std::filesystem::path sheet;
-    inspectCommand->add_option("--png", sheet,
+    inspectCommand->add_option("--png", inspect.sheet,
                                "Draw a compiled asset: the mesh, shells of its field, their sides "
                                "and errors; an environment's map");
 
@@ -216,7 +215,7 @@ int run(int argc, char** argv)
         return runEnvironment(environment);
     if (*buildCommand)
         return runBuild(build);
-    return *inspectCommand ? runInspect(file, json, sheet) : runValidate(file, json);
+    return *inspectCommand ? runInspect(inspect) : runValidate(inspect);
 }
 
 } // namespace

@@ -23,14 +23,31 @@ std::string text(const Json& json)
 }
 
 // The causes in the order in which they are printed.
-std::array<std::pair<const char*, FieldError>, 6> causesOf(const FieldErrors& errors)
+std::vector<std::pair<const char*, FieldError>> causesOf(const ShadowField& field)
 {
-    return {{{"total", errors.total},
-             {"angular", errors.angular},
-             {"radial", errors.radial},
-             {"quantisation", errors.quantisation},
-             {"directions", errors.directions},
-             {"bandLimit", errors.bandLimit}}};
+    const FieldErrors& errors = *field.errors;
+    std::vector<std::pair<const char*, FieldError>> causes = {{"total", errors.total},
+                                                              {"angular", errors.angular},
+                                                              {"radial", errors.radial},
+                                                              {"quantisation", errors.quantisation},
+                                                              {"directions", errors.directions}};
+    if (field.kind == FieldKind::Occlusion) // of radiance it is not known
+        causes.emplace_back("bandLimit", errors.bandLimit);
+    return causes;
+}
+
+std::string errorsText(const ShadowField& field)
+{
+    if (!field.errors)
+        return {};
+    std::string out = fmt::format(
+        "errors    at {} random points, {} (rms over all directions)\n", field.errors->points,
+        field.kind == FieldKind::Occlusion ? "in visibility"
+                                           : "as parts of the light at its brightest");
+    for (const auto& [cause, error] : causesOf(field))
+        out +=
+            fmt::format("          {:<13} rms {:.4f}  max {:.3f}\n", cause, error.rms, error.max);
+    return out;
 }
 
 Json fieldJson(const ShadowField& field)
@@ -49,7 +66,7 @@ Json fieldJson(const ShadowField& field)
                    {"bytes", field.texels.size()}};
     if (field.errors) {
         result["errors"]["points"] = field.errors->points;
-        for (const auto& [cause, error] : causesOf(*field.errors))
+        for (const auto& [cause, error] : causesOf(field))
             result["errors"][cause] = {{"rms", error.rms}, {"max", error.max}};
     }
     return result;
@@ -132,24 +149,6 @@ Json compileJson(const std::filesystem::path& source, const CompiledAsset& asset
     return result;
 }
 
-const char* shapeName(EmitterShape shape)
-{
-    switch (shape) {
-    case EmitterShape::Sphere:
-        return "sphere";
-    case EmitterShape::Rectangle:
-        return "rectangle";
-    case EmitterShape::Disc:
-        return "disc";
-    case EmitterShape::Spot:
-        return "spot";
-    case EmitterShape::Mesh:
-        return "mesh";
-    }
-    PENUMBRA_ASSERT(false, "shape {}", static_cast<int>(shape));
-    return "";
-}
-
 } // namespace
 
 std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset)
@@ -205,24 +204,19 @@ std::string describeAsset(const MeshAsset& mesh, std::size_t fileBytes, bool jso
                        field.texels.size(), field.shellSides.size(), sidesText(field),
                        field.innerRadius, field.outerRadius, field.radius, field.directions);
     if (field.kind == FieldKind::Radiance)
-        return out + fmt::format("light     {} channels, reaches {:.4g} m, steps {:.4g} {:.4g} "
-                                 "{:.4g} {:.4g} W/(m² sr) per band at the bounding sphere\n",
-                                 field.channels, field.outerRadius * field.radius,
-                                 field.bandScale[0] / 1.25f, field.bandScale[1] / 1.25f,
-                                 field.bandScale[2] / 1.25f, field.bandScale[3] / 1.25f);
+        return out +
+               fmt::format("light     {} channels, reaches {:.4g} m, steps {:.4g} {:.4g} "
+                           "{:.4g} {:.4g} W/(m² sr) per band at the bounding sphere\n",
+                           field.channels, field.outerRadius * field.radius,
+                           field.bandScale[0] / 1.25f, field.bandScale[1] / 1.25f,
+                           field.bandScale[2] / 1.25f, field.bandScale[3] / 1.25f) +
+               errorsText(field);
     // The step of the 8 bits at the bounding sphere, r = 1: g = 1 / 1.25.
     out += fmt::format("steps     {:.4f} {:.4f} {:.4f} {:.4f} per band at the bounding sphere "
                        "(open: c0 = 3.545)\n",
                        field.bandScale[0] / 1.25f, field.bandScale[1] / 1.25f,
                        field.bandScale[2] / 1.25f, field.bandScale[3] / 1.25f);
-    if (!field.errors)
-        return out;
-    out += fmt::format("errors    at {} random points, in visibility (rms over all directions)\n",
-                       field.errors->points);
-    for (const auto& [cause, error] : causesOf(*field.errors))
-        out +=
-            fmt::format("          {:<13} rms {:.4f}  max {:.3f}\n", cause, error.rms, error.max);
-    return out;
+    return out + errorsText(field);
 }
 
 std::string describeEnvironment(const Environment& environment, std::size_t fileBytes, bool json)

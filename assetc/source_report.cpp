@@ -23,6 +23,31 @@ Json vectorJson(vec3 v)
     return {v.x, v.y, v.z};
 }
 
+// Each once.
+std::map<std::string, bool> filesOf(const std::vector<AskedFile>& asked)
+{
+    std::map<std::string, bool> files;
+    for (const AskedFile& file : asked)
+        files[file.name] = file.found;
+    return files;
+}
+
+Json filesJson(const std::vector<AskedFile>& asked)
+{
+    Json files = Json::array();
+    for (const auto& [name, found] : filesOf(asked))
+        files.push_back({{"name", name}, {"found", found}});
+    return files;
+}
+
+std::string filesText(const std::vector<AskedFile>& asked)
+{
+    std::string out;
+    for (const auto& [name, found] : filesOf(asked))
+        out += fmt::format("file      {}{}\n", name, found ? "" : ": missing");
+    return out;
+}
+
 std::string headText(const RecognisedFile& file, std::size_t fileBytes)
 {
     return fmt::format("source    {} of {} bytes; {}\n", file.what, fileBytes, file.remedy);
@@ -41,9 +66,6 @@ std::string describeMeshSource(const RecognisedFile& file, const ImportedMesh& m
         high = i == 0 ? positions[i] : max(high, positions[i]);
     }
     const vec3 albedo = mesh.mesh.material.albedo;
-    std::map<std::string, bool> files; // each once
-    for (const AskedFile& other : asked)
-        files[other.name] = other.found;
     if (json) {
         Json result = head("mesh source", file, fileBytes);
         result["vertices"] = positions.size();
@@ -51,9 +73,7 @@ std::string describeMeshSource(const RecognisedFile& file, const ImportedMesh& m
         result["boundsMin"] = vectorJson(low);
         result["boundsMax"] = vectorJson(high);
         result["albedo"] = vectorJson(albedo);
-        result["files"] = Json::array();
-        for (const auto& [name, found] : files)
-            result["files"].push_back({{"name", name}, {"found", found}});
+        result["files"] = filesJson(asked);
         result["warnings"] = mesh.warnings;
         return text(result);
     }
@@ -62,8 +82,7 @@ std::string describeMeshSource(const RecognisedFile& file, const ImportedMesh& m
     out += fmt::format("mesh      {} vertices, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
                        positions.size(), mesh.mesh.indices.size() / 3, size.x, size.y, size.z);
     out += fmt::format("material  albedo {:.3f} {:.3f} {:.3f}\n", albedo.r, albedo.g, albedo.b);
-    for (const auto& [name, found] : files)
-        out += fmt::format("file      {}{}\n", name, found ? "" : ": missing");
+    out += filesText(asked);
     for (const std::string& warning : mesh.warnings)
         out += fmt::format("warning   {}\n", warning);
     return out;
@@ -106,6 +125,50 @@ std::string describeManifest(const RecognisedFile& file, const Manifest& manifes
     for (const auto& [kind, count] : kinds)
         out += fmt::format(", {} {}", count, kind);
     return out + "\n";
+}
+
+std::string describeLightSpec(const RecognisedFile& file, const LightSpec& spec,
+                              const std::vector<AskedFile>& asked, std::size_t fileBytes, bool json)
+{
+    const char* shape = shapeName(spec.shape);
+    if (json) {
+        Json result = head("light description", file, fileBytes);
+        result["shape"] = shape;
+        result["emission"] = vectorJson(spec.emission);
+        result["unit"] = unitName(spec.unit);
+        result["files"] = filesJson(asked);
+        return text(result);
+    }
+    std::string out = headText(file, fileBytes);
+    out += fmt::format("light     {}, {:.4g} {:.4g} {:.4g} {}\n", shape, spec.emission.r,
+                       spec.emission.g, spec.emission.b, unitName(spec.unit));
+    return out + filesText(asked);
+}
+
+std::string describeScene(const RecognisedFile& file, const SceneFile& scene, std::size_t fileBytes,
+                          bool json)
+{
+    if (json) {
+        Json result = head("scene", file, fileBytes);
+        result["entities"] = scene.entities;
+        result["meshes"] = scene.meshes;
+        result["occluders"] = scene.occluders;
+        result["lights"] = scene.lights;
+        result["assets"] = scene.assets;
+        return text(result);
+    }
+    std::string out =
+        fmt::format("scene     {} bytes: {} entities, {} with a mesh, {} with a field, {} lights\n",
+                    fileBytes, scene.entities, scene.meshes, scene.occluders, scene.lights);
+    for (const std::string& asset : scene.assets)
+        out += fmt::format("asset     {}\n", asset);
+    return out;
+}
+
+std::string describeReport(const RecognisedFile& file, std::size_t fileBytes, bool json)
+{
+    return json ? text(head("report", file, fileBytes))
+                : fmt::format("report    {} of {} bytes; {}\n", file.what, fileBytes, file.remedy);
 }
 
 } // namespace penumbra

@@ -1,9 +1,11 @@
-// What assetc says about files that it compiles: for programs as JSON, for people as text.
+// What assetc says about files that are not compiled: for programs as JSON, for people as text.
 #pragma once
 
 #include "assetc/build/manifest.h"
 #include "assetc/file_type.h"
 #include "assetc/import/import.h"
+#include "assetc/light/spec.h"
+#include "assetc/scene_file.h"
 #include "assets/environment.h"
 
 namespace penumbra {
@@ -16,5 +18,12 @@ std::string describeEnvironmentSource(const RecognisedFile& file, const Environm
                                       std::size_t fileBytes, bool json);
 std::string describeManifest(const RecognisedFile& file, const Manifest& manifest,
                              std::size_t fileBytes, bool json);
+
+std::string describeLightSpec(const RecognisedFile& file, const LightSpec& spec,
+                              const std::vector<AskedFile>& asked, std::size_t fileBytes,
+                              bool json);
+std::string describeScene(const RecognisedFile& file, const SceneFile& scene, std::size_t fileBytes,
+                          bool json);
+std::string describeReport(const RecognisedFile& file, std::size_t fileBytes, bool json);
 
 } // namespace penumbra

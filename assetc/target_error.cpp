@@ -41,23 +41,23 @@ bool refine(const FieldErrors& errors, BakeOptions& options)
 
 } // namespace
 
-TargetReport reachError(const MeshAsset& mesh, float target, BakeOptions& options, float& threshold,
-                        Progress& progress)
+TargetBake bakeToError(const MeshAsset& mesh, float target, BakeOptions options,
+                       float firstThreshold, Progress& progress)
 {
     options.shells = 16;
     options.side = 33;
     options.directions = 512;
-    const float firstThreshold = threshold;
-    TargetReport report;
+    TargetBake result;
+    TargetReport& report = result.report;
     for (;;) {
-        threshold = firstThreshold;
         const auto start = std::chrono::steady_clock::now();
-        const BakeResult baked =
-            bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);
+        result.baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);
+        const BakeResult& baked = result.baked;
         const FieldErrors whole =
             measureErrors(baked.field, quantiseField(baked.field), baked.probes);
         FieldErrors errors = whole;
         std::uint64_t bytes = 0;
+        float threshold = firstThreshold;
         for (;; threshold /= 2) {
             FieldSamples adapted = baked.field;
             bytes = adaptShells(adapted, {threshold}).bytes;
@@ -70,7 +70,7 @@ TargetReport reachError(const MeshAsset& mesh, float target, BakeOptions& option
         report.trials.push_back({options, threshold, readersError(errors), bytes, seconds.count()});
         report.reached = readersError(errors) <= target;
         if (report.reached || !refine(whole, options))
-            return report;
+            return result;
     }
 }
 

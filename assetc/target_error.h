@@ -20,12 +20,17 @@ struct TargetReport {
     bool reached = false;
 };
 
+struct TargetBake {
+    BakeResult baked; // of the last trial, before adaptation
+    TargetReport report;
+};
+
 // From a coarse bake on, doubles what causes most of the error: the side where that is angular, the
 // shells where radial, the directions where noise, until the error is at most `target`; halves the
 // threshold where adaptation causes it. Ends at 129 nodes, 121 shells and 16,384 directions, or
-// where nothing helps. Sets shells, side and directions of `options` and `threshold`.
-// Deterministic.
-TargetReport reachError(const MeshAsset& mesh, float target, BakeOptions& options, float& threshold,
-                        Progress& progress);
+// where nothing helps. Begins with `threshold`; of `options` shells, side and directions do not
+// count. Deterministic.
+TargetBake bakeToError(const MeshAsset& mesh, float target, BakeOptions options, float threshold,
+                       Progress& progress);
 
 } // namespace penumbra

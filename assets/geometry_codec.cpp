@@ -275,7 +275,7 @@ MeshGeometry decodePrimitives(const JsonReader& root, const JsonReader& mesh,
     geometry.colors.resize(heads[0].color ? vertexCount : 0);
     for (std::size_t p = 0; p < heads.size(); ++p)
         if (const auto read = readPart(heads[p], geometry.submeshes[p], geometry); !read) {
-            primitives.element(p).refuse(": " + read.error().message);
+            primitives.element(p).refuse("cannot be read: " + read.error().message);
             return geometry;
         }
     return geometry;

@@ -13,6 +13,19 @@ using nlohmann::json;
 constexpr std::array<const char*, 3> kTypes = {"directional", "point", "spot"};
 constexpr float kQuarter = 1.5707964f; // pi / 2, rounded up as doubles of it are
 
+// Turns -z, along which glTF's lights shine, to `direction`.
+quat turnTo(vec3 direction)
+{
+    const vec3 from(0, 0, -1);
+    const float cosine = dot(from, direction);
+    if (cosine < -0.99999f)
+        return {0, 0, 1, 0};
+    const vec3 axis = cross(from, direction);
+    return normalize(quat(1 + cosine, axis.x, axis.y, axis.z));
+}
+
+} // namespace
+
 MeshLight readLight(const JsonReader& source)
 {
     MeshLight light;
@@ -44,19 +57,6 @@ MeshLight readLight(const JsonReader& source)
     }
     return light;
 }
-
-// Turns -z, along which glTF's lights shine, to `direction`.
-quat turnTo(vec3 direction)
-{
-    const vec3 from(0, 0, -1);
-    const float cosine = dot(from, direction);
-    if (cosine < -0.99999f)
-        return {0, 0, 1, 0};
-    const vec3 axis = cross(from, direction);
-    return normalize(quat(1 + cosine, axis.x, axis.y, axis.z));
-}
-
-} // namespace
 
 std::vector<MeshLight> readLights(const JsonReader& root)
 {

@@ -11,6 +11,8 @@ constexpr const char* kLightExtension = "KHR_lights_punctual";
 // The lights of the document's extension, where they stand aside. Values outside their range are
 // problems.
 std::vector<MeshLight> readLights(const JsonReader& root);
+// One of them.
+MeshLight readLight(const JsonReader& source);
 
 // Index of the light that a node has, which exists among `count`; none where the node has none.
 std::optional<std::size_t> lightOfNode(const JsonReader& node, std::size_t count);

@@ -39,7 +39,7 @@ void checkVersion(const JsonReader& extension)
             version, kFormatMajor));
 }
 
-FieldErrors readErrors(const JsonReader& errors)
+FieldErrors readErrors(const JsonReader& errors, FieldKind kind)
 {
     const auto read = [&](const char* cause) {
         const JsonReader error = errors.member(cause);
@@ -51,7 +51,7 @@ FieldErrors readErrors(const JsonReader& errors)
             read("radial"),
             read("quantisation"),
             read("directions"),
-            read("bandLimit")};
+            kind == FieldKind::Occlusion ? read("bandLimit") : FieldError{}};
 }
 
 ShadowField readFieldHead(const JsonReader& extension)
@@ -76,7 +76,7 @@ ShadowField readFieldHead(const JsonReader& extension)
     field.directions =
         static_cast<std::uint32_t>(extension.count("directions", kMaxFieldDirections));
     if (extension.has("errors"))
-        field.errors = readErrors(extension.member("errors"));
+        field.errors = readErrors(extension.member("errors"), field.kind);
     const JsonReader scales = extension.member("bandScale");
     for (std::size_t band = 0; band < field.bandScale.size(); ++band)
         field.bandScale[band] = scales.element(band).asNumber(0, kAnyFloat);

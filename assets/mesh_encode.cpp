@@ -35,18 +35,20 @@ std::vector<SurfaceMaterial> materialsOf(const MeshAsset& mesh)
     return {material};
 }
 
-json errorsJson(const FieldErrors& errors)
+json errorsJson(const FieldErrors& errors, FieldKind kind)
 {
     const auto pair = [](const FieldError& error) {
         return json{{"rms", error.rms}, {"max", error.max}};
     };
-    return {{"points", errors.points},
-            {"total", pair(errors.total)},
-            {"angular", pair(errors.angular)},
-            {"radial", pair(errors.radial)},
-            {"quantisation", pair(errors.quantisation)},
-            {"directions", pair(errors.directions)},
-            {"bandLimit", pair(errors.bandLimit)}};
+    json result = {{"points", errors.points},
+                   {"total", pair(errors.total)},
+                   {"angular", pair(errors.angular)},
+                   {"radial", pair(errors.radial)},
+                   {"quantisation", pair(errors.quantisation)},
+                   {"directions", pair(errors.directions)}};
+    if (kind == FieldKind::Occlusion) // of radiance it is not known
+        result["bandLimit"] = pair(errors.bandLimit);
+    return result;
 }
 
 json fieldJson(const ShadowField& field)
@@ -65,7 +67,7 @@ json fieldJson(const ShadowField& field)
                    {"encoding", kFieldEncoding},
                    {"byteLength", field.texels.size()}};
     if (field.errors)
-        result["errors"] = errorsJson(*field.errors);
+        result["errors"] = errorsJson(*field.errors, field.kind);
     return result;
 }
 

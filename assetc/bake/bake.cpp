@@ -2,11 +2,11 @@
 // (assetc/bake/line_space.h).
 #include "assetc/bake.h"
 
-#include "assetc/bake/beside_surface.h"
 #include "assetc/bake/directions.h"
 #include "assetc/bake/fill_inside.h"
 #include "assetc/bake/point_blocks.h"
 #include "assetc/bake/target_clones.h"
+#include "assetc/embree_scene.h"
 #include "assetc/trace_visibility.h"
 #include "assets/bounding_sphere.h"
 
@@ -135,26 +135,25 @@ void accumulate(const std::vector<LineSpace>& lines, const BakeDirections& bake,
 void traceBeside(const EmbreeScene& scene, const ShadowField& field, const BakeDirections& bake,
                  float pixel, Receivers& receivers)
 {
-    const std::vector<std::size_t> beside = pointsBeside(
-        scene, receivers.points.points, field.center, field.radius, kTracedWithin * pixel);
-    const std::size_t parts = receivers.blockedByOdd.empty() ? 1 : 2;
-    for (std::size_t part = 0; part < parts; ++part) {
-        std::vector<vec3> directions;
-        std::vector<Sh4> basis;
-        for (std::size_t i = part; i < bake.pairs(); i += parts)
-            for (const std::size_t d : {i, i + bake.pairs()}) {
-                directions.push_back(bake.directions[d]);
-                basis.push_back(bake.basis[d]);
-            }
-        std::vector<Sh4>& sums = part == 1 ? receivers.blockedByOdd : receivers.blocked;
-        const PointSet& p = receivers.points.points;
-        tbb::parallel_for(std::size_t{0}, beside.size(), [&](std::size_t k) {
-            const std::size_t i = beside[k];
-            sums[i] = traceBlocked(scene.handle(),
-                                   field.center + field.radius * vec3(p.x[i], p.y[i], p.z[i]),
-                                   directions, basis);
-        });
-    }
+    const PointSet& p = receivers.points.points;
+    const float within = kTracedWithin * pixel;
+    const std::size_t sets = receivers.blockedByOdd.empty() ? 1 : 2;
+    std::vector<vec3> directions[2];
+    std::vector<Sh4> basis[2];
+    for (std::size_t i = 0; i < bake.pairs(); ++i)
+        for (const std::size_t d : {i, i + bake.pairs()}) {
+            directions[i % sets].push_back(bake.directions[d]);
+            basis[i % sets].push_back(bake.basis[d]);
+        }
+    tbb::parallel_for(std::size_t{0}, p.size(), [&](std::size_t i) {
+        const vec3 point(p.x[i], p.y[i], p.z[i]), at = field.center + field.radius * point;
+        const float reach = field.radius * within;
+        if (length(point) > 1 + within || scene.distance(at, reach) >= reach)
+            return;
+        receivers.blocked[i] = traceBlocked(scene.handle(), at, directions[0], basis[0]);
+        if (sets == 2)
+            receivers.blockedByOdd[i] = traceBlocked(scene.handle(), at, directions[1], basis[1]);
+    });
 }
 
 // A vertex lies on the surface that the raster knows only per line: lifted by three quarters of a

@@ -1,6 +1,7 @@
 #include "assetc/build/asset_build.h"
 
 #include "assetc/build/depfile.h"
+#include "assetc/overwrite.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -57,12 +58,22 @@ std::vector<WatchedFile> watchedFiles(const fs::path& source,
     return watched;
 }
 
-void describeUnchanged(const ManifestAsset& asset, const BuildRecord& record, std::uint64_t bytes,
-                       AssetOutcome& outcome)
+Fingerprint fingerprintBytes(const fs::path& path, std::span<const std::byte> bytes)
+{
+    return {stampFile(path),
+            contentHash({reinterpret_cast<const char*>(bytes.data()), bytes.size()})};
+}
+
+void describeUnchanged(const ManifestAsset& asset, const BuildRecord& record,
+                       const fs::path& folder, AssetOutcome& outcome)
 {
     outcome.status = BuildStatus::Unchanged;
     outcome.key = record.key;
-    outcome.bytes = bytes;
+    outcome.bytes = stampFile(folder / asset.outputName()).size;
+    for (const RecordedPart& part : record.parts) {
+        outcome.parts.push_back(asset.partName(part.name));
+        outcome.bytes += stampFile(folder / outcome.parts.back()).size;
+    }
     outcome.warnings = record.warnings;
     outcome.files = watchedFiles(asset.source, record.files);
 }
@@ -98,7 +109,7 @@ bool AssetBuild::isUnchanged(const ManifestAsset& asset, AssetOutcome& outcome)
         tbb::this_task_arena::isolate([&] { build(asset, outcome); });
         return true;
     }
-    describeUnchanged(asset, *freshness.record, stampFile(outputPath(asset)).size, outcome);
+    describeUnchanged(asset, *freshness.record, m_folder, outcome);
     return true;
 }
 
@@ -112,7 +123,7 @@ void AssetBuild::build(const ManifestAsset& asset, AssetOutcome& outcome)
             done = compile(asset, outcome);
         } else {
             done = mend(asset, freshness);
-            describeUnchanged(asset, *freshness.record, stampFile(outputPath(asset)).size, outcome);
+            describeUnchanged(asset, *freshness.record, m_folder, outcome);
         }
     }
     if (!done) {
@@ -142,10 +153,16 @@ AssetBuild::Freshness AssetBuild::check(const ManifestAsset& asset) const
         refresh(asset.source.parent_path() / file.name, file.fingerprint);
     if (assetKey(m_compiler, asset, record.files) != record.key)
         return {};
-    const std::string hash = record.output.hash;
-    refresh(outputPath(asset), record.output);
-    if (record.output.hash != hash)
+    const auto isRecorded = [&](const fs::path& path, Fingerprint& known) {
+        const std::string hash = known.hash;
+        refresh(path, known);
+        return known.hash == hash;
+    };
+    if (!isRecorded(outputPath(asset), record.output))
         return {};
+    for (RecordedPart& part : record.parts)
+        if (!isRecorded(m_folder / asset.partName(part.name), part.fingerprint))
+            return {};
     const auto text = depfile(asset, record.files);
     const auto present = readFile(depfilePath(asset), kMaxDepfileBytes);
     result.newDepfile =
@@ -175,6 +192,10 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
     const auto begin = std::chrono::steady_clock::now();
     std::vector<AskedFile> asked;
     auto compiled = compileKind(asset, asked);
+    if (compiled)
+        if (const auto kept = refuseOverwrite(asset.source, asked, outputs(asset, *compiled));
+            !kept)
+            compiled = kept.error();
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     BuildRecord record;
@@ -190,6 +211,15 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
         return fail(dependencies.error(), asset.source.string());
 
     const std::scoped_lock writing(m_writing);
+    for (const CompiledPart& part : compiled->parts) {
+        const fs::path path = m_folder / asset.partName(part.name);
+        if (auto written = put(asset, path, part.bytes); !written)
+            return written;
+        record.parts.push_back({part.name, fingerprintBytes(path, part.bytes)});
+        outcome.parts.push_back(asset.partName(part.name));
+        outcome.bytes += part.bytes.size();
+    }
+    // After what it names.
     if (auto written = put(asset, outputPath(asset), compiled->bytes); !written)
         return written;
     if (auto written = put(asset, depfilePath(asset), *dependencies); !written)
@@ -197,9 +227,7 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
     if (sure) {
         record.key = assetKey(m_compiler, asset, record.files);
         record.warnings = compiled->warnings;
-        record.output = {stampFile(outputPath(asset)),
-                         contentHash({reinterpret_cast<const char*>(compiled->bytes.data()),
-                                      compiled->bytes.size()})};
+        record.output = fingerprintBytes(outputPath(asset), compiled->bytes);
         if (auto written = put(asset, recordPath(m_state, asset), recordText(record)); !written)
             return written;
     } else {
@@ -208,10 +236,19 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
     }
     outcome.status = BuildStatus::Built;
     outcome.key = record.key;
-    outcome.bytes = compiled->bytes.size();
+    outcome.bytes += compiled->bytes.size();
     outcome.warnings = std::move(compiled->warnings);
     outcome.report = std::move(compiled->report);
     return {};
+}
+
+std::vector<fs::path> AssetBuild::outputs(const ManifestAsset& asset,
+                                          const CompiledBytes& compiled) const
+{
+    std::vector<fs::path> paths = {outputPath(asset)};
+    for (const CompiledPart& part : compiled.parts)
+        paths.push_back(m_folder / asset.partName(part.name));
+    return paths;
 }
 
 Result<void> AssetBuild::put(const ManifestAsset& asset, const fs::path& path,

@@ -36,6 +36,8 @@ private:
     // With the asset's lock held.
     Result<void> mend(const ManifestAsset& asset, const Freshness& freshness);
     Result<void> compile(const ManifestAsset& asset, AssetOutcome& outcome);
+    [[nodiscard]] std::vector<std::filesystem::path> outputs(const ManifestAsset& asset,
+                                                             const CompiledBytes& compiled) const;
     // With the asset's lock and m_writing held.
     Result<void> put(const ManifestAsset& asset, const std::filesystem::path& path,
                      std::span<const std::byte> bytes) const;

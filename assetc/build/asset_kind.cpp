@@ -1,5 +1,6 @@
 #include "assetc/build/asset_kind.h"
 
+#include "assetc/compile_scene.h"
 #include "assetc/environment.h"
 #include "assetc/light.h"
 #include "assetc/report.h"
@@ -70,8 +71,32 @@ Result<CompiledBytes> compileMesh(const std::filesystem::path& source,
     if (!asset)
         return asset.error();
     std::string report = compileReport(source, *asset);
-    return CompiledBytes{std::move(asset->bytes), std::move(asset->report.warnings),
-                         std::move(report)};
+    return CompiledBytes{
+        std::move(asset->bytes), {}, std::move(asset->report.warnings), std::move(report)};
+}
+
+// What `assetc bake --per-node` writes.
+Result<CompiledBytes> compileSceneBytes(const std::filesystem::path& source,
+                                        const nlohmann::json& options,
+                                        std::vector<AskedFile>& asked)
+{
+    JsonProblems none;
+    const CompileOptions parsed = readMeshOptions(JsonReader(options, "options", none));
+    Progress progress(source.stem().string(), Progress::Show::Never);
+    auto scene = compileScene(source, parsed, progress, &asked);
+    if (!scene)
+        return scene.error();
+    CompiledBytes result;
+    result.report = sceneReport(source, *scene);
+    const auto json = std::as_bytes(std::span(scene->json));
+    result.bytes.assign(json.begin(), json.end());
+    result.warnings = std::move(scene->warnings);
+    for (SceneAsset& part : scene->assets) {
+        for (const std::string& warning : part.asset.report.warnings)
+            result.warnings.push_back(part.file + ": " + warning);
+        result.parts.push_back({part.file, std::move(part.asset.bytes)});
+    }
+    return result;
 }
 
 void checkEnvironmentOptions(const JsonReader& options)
@@ -88,7 +113,7 @@ Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, co
     auto bytes = encodeEnvironment(*environment);
     if (!bytes)
         return fail(bytes.error(), source.string());
-    CompiledBytes result{std::move(*bytes), {}, environmentReport(*environment)};
+    CompiledBytes result{std::move(*bytes), {}, {}, environmentReport(*environment)};
     const EnvironmentStatistics& statistics = environment->statistics;
     if (statistics.negative + statistics.absurd > 0)
         result.warnings.push_back(
@@ -121,7 +146,9 @@ Result<CompiledBytes> compileLightBytes(const std::filesystem::path& source,
     if (!light)
         return light.error();
     std::string report = lightReport(source, *light);
-    return CompiledBytes{std::move(light->asset.bytes), std::move(light->asset.report.warnings),
+    return CompiledBytes{std::move(light->asset.bytes),
+                         {},
+                         std::move(light->asset.report.warnings),
                          std::move(report)};
 }
 
@@ -131,6 +158,7 @@ constexpr const char* kLightEndings[] = {".json"};
 
 constexpr AssetKind kKinds[] = {
     {"mesh", ".glb", kMeshEndings, checkMeshOptions, compileMesh},
+    {"scene", "/scene.json", {}, checkMeshOptions, compileSceneBytes}, // never guessed
     {"environment", ".env", kEnvironmentEndings, checkEnvironmentOptions, compileEnvironment},
     {"light", ".glb", kLightEndings, checkLightOptions, compileLightBytes},
 };

@@ -8,17 +8,26 @@
 
 namespace penumbra {
 
+// A file beside the output, in a folder of the asset's own.
+struct CompiledPart {
+    std::string name; // plain: no folder
+    std::vector<std::byte> bytes;
+};
+
 struct CompiledBytes {
     std::vector<std::byte> bytes;
+    std::vector<CompiledPart> parts; // of kinds whose output is in a folder
     std::vector<std::string> warnings;
     std::string report; // JSON, as the kind's own command writes it
 };
 
 struct AssetKind {
     const char* name;            // in the manifest
-    const char* outputExtension; // ".glb"
+    const char* outputExtension; // ".glb", or "/scene.json" where the name is a folder's
     std::span<const char* const>
         sourceEndings; // ".obj": in lower case; what the kind is guessed by
+
+    [[nodiscard]] bool hasFolder() const { return outputExtension[0] == '/'; }
 
     // Records every problem of `options`, an object; all members are optional.
     void (*checkOptions)(const JsonReader& options);

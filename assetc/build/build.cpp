@@ -27,7 +27,17 @@ void refuseOverwrites(const Manifest& manifest, const AssetBuild& build,
         places.emplace(fs::weakly_canonical(asset.source, ignored), asset.place);
     for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
         const fs::path output = build.outputPath(manifest.assets[i]);
-        const auto found = places.find(fs::weakly_canonical(output, ignored));
+        const fs::path place = fs::weakly_canonical(output, ignored);
+        auto found = places.find(place);
+        if (found == places.end() && manifest.assets[i].kind->hasFolder()) {
+            // Any file of the folder may become a part. Paths sort by folder.
+            const fs::path folder = place.parent_path();
+            found = places.upper_bound(folder);
+            if (found != places.end() && std::mismatch(folder.begin(), folder.end(),
+                                                       found->first.begin(), found->first.end())
+                                                 .first != folder.end())
+                found = places.end();
+        }
         if (found != places.end())
             outcomes[i].message =
                 fmt::format("{}: the output would replace the source of {}; rename the asset or "
@@ -66,9 +76,24 @@ void buildOpen(const Manifest& manifest, AssetBuild& build, const std::vector<st
     group.wait();
 }
 
+// Meshes in the folder of an asset that are none of its parts any more.
+void addStaleParts(const ManifestAsset& asset, const AssetOutcome& outcome, const fs::path& folder,
+                   std::vector<std::string>& stale)
+{
+    const std::set<std::string> known(outcome.parts.begin(), outcome.parts.end());
+    std::error_code error;
+    for (fs::directory_iterator i(folder / asset.name, error), end; !error && i != end;
+         i.increment(error)) {
+        std::string name = asset.partName(i->path().filename().string());
+        if (i->path().extension() == ".glb" && !known.contains(name))
+            stale.push_back(std::move(name));
+    }
+}
+
 // Outputs that are there and recorded, but of no asset of the manifest.
-std::vector<std::string> staleOutputs(const Manifest& manifest, const AssetBuild& build,
-                                      const fs::path& folder)
+std::vector<std::string> staleOutputs(const Manifest& manifest,
+                                      const std::vector<AssetOutcome>& outcomes,
+                                      const AssetBuild& build, const fs::path& folder)
 {
     std::set<std::string> known;
     for (const ManifestAsset& asset : manifest.assets)
@@ -85,7 +110,11 @@ std::vector<std::string> staleOutputs(const Manifest& manifest, const AssetBuild
         if (!known.contains(name) && fs::is_regular_file(folder / name, ignored))
             stale.push_back(std::move(name));
     }
+    for (std::size_t i = 0; i < outcomes.size(); ++i)
+        if (manifest.assets[i].kind->hasFolder() && outcomes[i].status != BuildStatus::Failed)
+            addStaleParts(manifest.assets[i], outcomes[i], folder, stale);
     std::sort(stale.begin(), stale.end());
+    stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
     return stale;
 }
 
@@ -131,7 +160,7 @@ Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folde
         ++(asset.status == BuildStatus::Built       ? outcome.built
            : asset.status == BuildStatus::Unchanged ? outcome.unchanged
                                                     : outcome.failed);
-    outcome.stale = staleOutputs(manifest, build, folder);
+    outcome.stale = staleOutputs(manifest, outcome.assets, build, folder);
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return outcome;

@@ -1,6 +1,7 @@
 // Brings the assets of a manifest up to date in a folder. An asset is compiled if its key
 // (assetc/build/record.h) is new or its output is not the recorded one.
 //   DIR/NAME.glb, NAME.env     outputs
+//   DIR/NAME/                  of a scene: scene.json and its parts, nothing else
 //   DIR/NAME.glb.d             depfile of each
 //   DIR/.penumbra/records/     a record per asset
 //   DIR/.penumbra/temporary/   files while they are written; what a killed build left there goes
@@ -29,10 +30,11 @@ struct WatchedFile {
 
 struct AssetOutcome {
     BuildStatus status = BuildStatus::Failed;
-    double seconds = 0;      // wall time of the compilation
-    std::uint64_t bytes = 0; // of the output
-    std::string key;         // empty where it failed
-    std::string message;     // why it failed
+    double seconds = 0;             // wall time of the compilation
+    std::uint64_t bytes = 0;        // of the output and its parts
+    std::vector<std::string> parts; // outputs beside it, as paths in the folder
+    std::string key;                // empty where it failed
+    std::string message;            // why it failed
     std::vector<std::string> warnings;
     std::string report; // JSON of the kind; of what was built
     std::vector<WatchedFile> files;

@@ -33,6 +33,8 @@ Json assetJson(const ManifestAsset& asset, const AssetOutcome& outcome)
                    {"seconds", outcome.seconds},
                    {"bytes", outcome.bytes},
                    {"key", outcome.key}};
+    if (asset.kind->hasFolder())
+        result["parts"] = outcome.parts;
     if (outcome.status == BuildStatus::Failed)
         result["message"] = outcome.message;
     result["warnings"] = outcome.warnings;

@@ -1,5 +1,6 @@
 #include "assetc/build/manifest.h"
 
+#include "assetc/file_type.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -137,6 +138,27 @@ void checkDefaults(const JsonReader& defaults, const nlohmann::json& value)
     }
 }
 
+// Nothing else lies in the folder of an asset that has one: what its parts are called is not known
+// before it is compiled.
+void refuseSharedFolders(const Manifest& manifest, const JsonReader& assets,
+                         const std::map<std::string, std::size_t>& firstOf)
+{
+    for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
+        const std::string& name = manifest.assets[i].name;
+        for (std::size_t end = name.find('/'); end != std::string::npos;
+             end = name.find('/', end + 1)) {
+            const auto above = firstOf.find(name.substr(0, end));
+            if (above == firstOf.end())
+                continue;
+            const ManifestAsset& owner = manifest.assets[above->second];
+            if (owner.kind && owner.kind->hasFolder())
+                assets.element(i).member("name").refuse(
+                    fmt::format("lies in the folder of the {} {}; choose another name",
+                                owner.kind->name, owner.place));
+        }
+    }
+}
+
 } // namespace
 
 std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems)
@@ -144,6 +166,12 @@ std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProb
     const auto bytes = readFile(file, kMaxManifestBytes);
     if (!bytes) { // its message names the file
         problems.push_back(bytes.error());
+        return std::nullopt;
+    }
+    if (const std::string other = otherKindText(*bytes, FileType::Manifest); !other.empty()) {
+        problems.push_back({fmt::format("{}: {}; assetc build reads a manifest, which lists assets "
+                                        "(docs/build_manifest.md)",
+                                        file.string(), other)});
         return std::nullopt;
     }
     const auto document =
@@ -180,6 +208,7 @@ std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProb
                                                      first->second));
         manifest.assets.push_back(std::move(asset));
     }
+    refuseSharedFolders(manifest, assets, firstOf);
     for (const Error& problem : found)
         problems.push_back(fail(problem, file.string()));
     if (!found.empty())

@@ -13,6 +13,8 @@ struct ManifestAsset {
     nlohmann::json options; // defaults of the kind, then the asset's own
 
     [[nodiscard]] std::string outputName() const { return name + kind->outputExtension; }
+    // Of a kind that has a folder.
+    [[nodiscard]] std::string partName(const std::string& part) const { return name + "/" + part; }
 };
 
 struct Manifest {

@@ -11,14 +11,26 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kRecordVersion = 1; // another one is no record
+constexpr int kRecordVersion = 2; // another one is no record
 constexpr std::uint64_t kMaxRecordBytes = 16u << 20;
 constexpr std::size_t kMaxFiles = 100'000;
 constexpr std::uint64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
 
 std::string text(const json& value)
 {
-    return value.dump(-1, ' ', false, json::error_handler_t::replace); // names need not be UTF-8
+    return value.dump(-1, ' ', false, json::error_handler_t::replace); // warnings may hold names
+}
+
+// Names need not be UTF-8, JSON must be: "%" and what is not ASCII as "%20".
+std::string escaped(const std::string& name)
+{
+    std::string text;
+    for (const char c : name)
+        if (c == '%' || static_cast<unsigned char>(c) >= 0x80)
+            text += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+        else
+            text += c;
+    return text;
 }
 
 // [size, time of change, hash]; [] where there is no file.
@@ -66,7 +78,13 @@ std::optional<BuildRecord> readRecord(const std::filesystem::path& file)
     const JsonReader files = root.member("files");
     for (std::size_t i = 0, count = files.length(kMaxFiles); i < count; ++i) {
         const JsonReader entry = files.element(i);
-        record.files.push_back({entry.element(0).asText(), readFingerprint(entry.element(1))});
+        record.files.push_back(
+            {decodeUri(entry.element(0).asText()), readFingerprint(entry.element(1))});
+    }
+    const JsonReader parts = root.member("parts");
+    for (std::size_t i = 0, count = parts.length(kMaxFiles); i < count; ++i) {
+        const JsonReader entry = parts.element(i);
+        record.parts.push_back({entry.element(0).asText(), readFingerprint(entry.element(1))});
     }
     const JsonReader warnings = root.member("warnings");
     for (std::size_t i = 0, count = warnings.length(kMaxFiles); i < count; ++i)
@@ -81,10 +99,14 @@ std::string recordText(const BuildRecord& record)
     json document = {{"version", kRecordVersion},
                      {"key", record.key},
                      {"output", fingerprintJson(record.output)},
+                     {"parts", json::array()},
                      {"files", json::array()},
                      {"warnings", record.warnings}};
+    for (const RecordedPart& entry : record.parts)
+        document["parts"].push_back(json::array({entry.name, fingerprintJson(entry.fingerprint)}));
     for (const RecordedFile& entry : record.files)
-        document["files"].push_back(json::array({entry.name, fingerprintJson(entry.fingerprint)}));
+        document["files"].push_back(
+            json::array({escaped(entry.name), fingerprintJson(entry.fingerprint)}));
     return text(document) + "\n";
 }
 
@@ -96,7 +118,7 @@ std::string assetKey(const std::string& compiler, const ManifestAsset& asset,
                 {"options", asset.options},
                 {"files", json::array()}};
     for (const RecordedFile& file : files)
-        key["files"].push_back(json::array({file.name, file.fingerprint.hash}));
+        key["files"].push_back(json::array({escaped(file.name), file.fingerprint.hash}));
     return contentHash(text(key));
 }
 

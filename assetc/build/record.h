@@ -15,9 +15,15 @@ struct RecordedFile {
     Fingerprint fingerprint;
 };
 
+struct RecordedPart {
+    std::string name; // beside the output
+    Fingerprint fingerprint;
+};
+
 struct BuildRecord {
     std::string key; // assetKey of all that follows
     Fingerprint output;
+    std::vector<RecordedPart> parts; // further outputs, of a scene
     std::vector<RecordedFile> files;
     std::vector<std::string> warnings; // repeated while the asset is unchanged
 };

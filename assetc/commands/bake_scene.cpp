@@ -1,5 +1,6 @@
 #include "assetc/commands/commands.h"
 #include "assetc/compile_scene.h"
+#include "assetc/overwrite.h"
 #include "assetc/report.h"
 #include "runtime/file.h"
 
@@ -9,20 +10,21 @@ namespace penumbra {
 
 namespace {
 
-Result<void> writeScene(const BakeArguments& arguments, const CompiledScene& scene)
+Result<void> writeScene(const BakeArguments& arguments, const CompiledScene& scene,
+                        const std::vector<AskedFile>& asked)
 {
-    std::error_code error; // a missing file is equivalent to none
+    std::vector<std::filesystem::path> outputs = {arguments.output / kSceneFile};
     for (const SceneAsset& part : scene.assets)
-        if (std::filesystem::equivalent(arguments.input, arguments.output / part.file, error))
-            return Error{fmt::format("{}: would replace the input; choose another folder",
-                                     (arguments.output / part.file).string())};
+        outputs.push_back(arguments.output / part.file);
+    if (auto kept = refuseOverwrite(arguments.input, asked, outputs); !kept)
+        return kept;
     for (const SceneAsset& part : scene.assets)
         if (const auto written = writeFile(arguments.output / part.file,
                                            std::span<const std::byte>(part.asset.bytes));
             !written)
             return written;
     // Last: a scene names only what is there.
-    if (const auto written = writeFile(arguments.output / "scene.json", scene.json); !written)
+    if (const auto written = writeFile(arguments.output / kSceneFile, scene.json); !written)
         return written;
     return arguments.report.empty()
                ? Result<void>{}
@@ -40,11 +42,12 @@ int runBakeScene(const BakeArguments& arguments)
         spdlog::error("{}: the output of --per-node is a folder", arguments.output.string());
         return kExitUsage;
     }
-    if (!checkReport(arguments.report, {arguments.input, arguments.output / "scene.json"}))
+    if (!checkReport(arguments.report, {arguments.input, arguments.output / kSceneFile}))
         return kExitUsage;
+    std::vector<AskedFile> asked;
     const auto scene = [&] {
         Progress progress(arguments.input.stem().string());
-        return compileScene(arguments.input, arguments.options, progress);
+        return compileScene(arguments.input, arguments.options, progress, &asked);
     }();
     if (!scene) {
         spdlog::error("{}", scene.error().message);
@@ -55,7 +58,7 @@ int runBakeScene(const BakeArguments& arguments)
     for (const SceneAsset& part : scene->assets)
         for (const std::string& warning : part.asset.report.warnings)
             spdlog::warn("{}: {}", part.file, warning);
-    if (const auto written = writeScene(arguments, *scene); !written) {
+    if (const auto written = writeScene(arguments, *scene, asked); !written) {
         spdlog::error("{}", written.error().message);
         return kExitInput;
     }

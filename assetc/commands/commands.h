@@ -36,10 +36,16 @@ struct LightArguments {
 };
 int runLight(const LightArguments& arguments);
 
-// Any kind of file, told by its content: compiled assets, sources, manifests. A source is valid if
-// it can be read. `sheet`: a picture of a compiled asset is written there, .png; none where empty.
-int runInspect(const std::filesystem::path& file, bool json, const std::filesystem::path& sheet);
-int runValidate(const std::filesystem::path& file, bool json);
+struct InspectArguments {
+    std::filesystem::path input;
+    std::filesystem::path report; // what is said, as JSON; none where empty
+    std::filesystem::path sheet;  // .png: a picture of a compiled asset; none where empty
+    bool json = false;            // on stdout too
+};
+// Any kind of file (assetc/inspection.h). Of an invalid one inspect writes no report, validate
+// does.
+int runInspect(const InspectArguments& arguments);
+int runValidate(const InspectArguments& arguments);
 
 // True where no report is asked for, or one that ends in .json and is none of `others`; otherwise
 // says so on stderr.

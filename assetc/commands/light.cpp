@@ -1,6 +1,7 @@
 #include "assetc/light.h"
 
 #include "assetc/commands/commands.h"
+#include "assetc/overwrite.h"
 #include "assetc/report.h"
 #include "runtime/file.h"
 
@@ -24,9 +25,12 @@ int runLight(const LightArguments& arguments)
     }
     for (const std::string& warning : light->asset.report.warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
+    if (const auto kept = refuseOverwrite(arguments.input, asked, {arguments.output}); !kept) {
+        spdlog::error("{}", kept.error().message);
+        return kExitUsage;
+    }
     for (const AskedFile& file : asked)
-        if (!checkOutput(arguments.input.parent_path() / file.name, arguments.output, ".glb") ||
-            !checkReport(arguments.report, {arguments.input.parent_path() / file.name}))
+        if (!checkReport(arguments.report, {arguments.input.parent_path() / file.name}))
             return kExitUsage;
     const std::span<const std::byte> bytes(light->asset.bytes);
     if (const auto written = writeFile(arguments.output, bytes); !written) {

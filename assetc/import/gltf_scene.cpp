@@ -164,13 +164,14 @@ private:
 
 } // namespace
 
-Result<ImportedScene> importGltfScene(const std::filesystem::path& path)
+Result<ImportedScene> importGltfScene(const std::filesystem::path& path,
+                                      std::vector<AskedFile>* asked)
 {
     const auto bytes = readFile(path, kMaxSourceBytes);
     if (!bytes)
         return bytes.error();
     ImportedScene out;
-    const auto document = loadGltf(*bytes, path.parent_path(), out.warnings);
+    const auto document = loadGltf(*bytes, path.parent_path(), out.warnings, asked);
     if (!document)
         return document.error();
     SceneImporter importer(*document, out);

@@ -1,6 +1,7 @@
 // glTF 2.0 with its hierarchy.
 #pragma once
 
+#include "assetc/import/folder.h"
 #include "assetc/import/imported_scene.h"
 
 #include <filesystem>
@@ -9,7 +10,9 @@ namespace penumbra {
 
 // The nodes of the default scene, parents first. Nodes that show one mesh by similarities share it;
 // any other transform is partly in a mesh of its own (SplitTransform::rest). Each instance of
-// EXT_mesh_gpu_instancing is a child of its node. Error: a skin, which is not rigid.
-Result<ImportedScene> importGltfScene(const std::filesystem::path& path);
+// EXT_mesh_gpu_instancing is a child of its node. `asked` gets the files that the document names.
+// Error: a skin, which is not rigid.
+Result<ImportedScene> importGltfScene(const std::filesystem::path& path,
+                                      std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

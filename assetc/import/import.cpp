@@ -41,14 +41,15 @@ Result<ImportedMesh> meshByExtension(const std::filesystem::path& path,
     return unknownExtension(extension);
 }
 
-Result<ImportedScene> sceneByExtension(const std::filesystem::path& path)
+Result<ImportedScene> sceneByExtension(const std::filesystem::path& path,
+                                       std::vector<AskedFile>* asked)
 {
     const std::string extension = extensionOf(path);
     if (extension == ".glb" || extension == ".gltf")
-        return importGltfScene(path);
+        return importGltfScene(path, asked);
     if (extension != ".obj")
         return unknownExtension(extension);
-    auto imported = importObj(path);
+    auto imported = importObj(path, asked);
     if (!imported)
         return imported.error();
     ImportedScene scene;
@@ -65,8 +66,11 @@ Result<ImportedScene> sceneByExtension(const std::filesystem::path& path)
 Error explain(const Error& error, const std::filesystem::path& path)
 {
     if (const auto bytes = readFile(path, kMaxSourceBytes))
-        if (const RecognisedFile file = recogniseFile(*bytes); file.bySignature)
-            return {fmt::format("{}: {}", path.string(), fileTypeText(file))};
+        if (const std::string other = otherKindText(*bytes, FileType::MeshSource);
+            !other.empty() && !std::string_view(reinterpret_cast<const char*>(bytes->data()),
+                                                bytes->size())
+                                   .starts_with("glTF")) // a damaged one has a place to name
+            return {fmt::format("{}: {}", path.string(), other)};
     return error.message.starts_with(path.string()) ? error : fail(error, path.string());
 }
 
@@ -95,9 +99,10 @@ Result<ImportedMesh> importMesh(const std::filesystem::path& path, std::vector<A
     return imported;
 }
 
-Result<ImportedScene> importScene(const std::filesystem::path& path)
+Result<ImportedScene> importScene(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
-    return guarded(path, sceneByExtension);
+    return guarded(
+        path, [asked](const std::filesystem::path& file) { return sceneByExtension(file, asked); });
 }
 
 } // namespace penumbra

@@ -16,6 +16,7 @@ Result<ImportedMesh> importMesh(const std::filesystem::path& path,
                                 std::vector<AskedFile>* asked = nullptr);
 
 // The same file with its hierarchy; of an OBJ file one node.
-Result<ImportedScene> importScene(const std::filesystem::path& path);
+Result<ImportedScene> importScene(const std::filesystem::path& path,
+                                  std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

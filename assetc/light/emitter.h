@@ -22,6 +22,10 @@ public:
     // Thread safe and deterministic.
     [[nodiscard]] virtual RadianceSh radianceAt(vec3 position) const = 0;
 
+    // Estimate of the error of radianceAt by the finite number of samples: half the difference
+    // between what every other sample gives. 0 where there is no such error.
+    [[nodiscard]] virtual RadianceSh noiseAt(vec3 /*position*/) const { return {}; }
+
     // Flux through the whole surface without what it blocks itself, RGB, W.
     [[nodiscard]] virtual vec3 power() const = 0;
 

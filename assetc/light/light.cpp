@@ -1,5 +1,6 @@
 #include "assetc/light.h"
 
+#include "assetc/field_errors.h"
 #include "assetc/import/import.h"
 #include "assetc/light/flat_emitter.h"
 #include "assetc/light/light_field.h"
@@ -7,7 +8,6 @@
 #include "assetc/light/shape_mesh.h"
 #include "assetc/light/sphere_emitter.h"
 
-#include <chrono>
 #include <numbers>
 
 namespace penumbra {
@@ -67,9 +67,10 @@ Result<LightFieldOptions> fieldOptions(const LightSpec& spec, const LightOptions
     field.innerRadius = spec.shape == EmitterShape::Sphere ? 1.0f : 0.2f;
     field.outerRadius = spec.reach > 0 ? spec.reach / radius : kLightOuterRadius;
     if (field.outerRadius < kMinLightReach || field.outerRadius > kMaxLightReach)
-        return Error{
-            fmt::format("a reach of {} m; a light of bounding radius {} m reaches {} to {}",
-                        spec.reach, radius, kMinLightReach * radius, kMaxLightReach * radius)};
+        return Error{fmt::format(
+            "a reach of {} m; a light of bounding radius {} m can reach {} to {} m; set "
+            "\"reach\" between them or leave it out",
+            spec.reach, radius, kMinLightReach * radius, kMaxLightReach * radius)};
     return field;
 }
 
@@ -79,33 +80,15 @@ float cellAngle(std::uint32_t side)
     return 180.0f * std::numbers::sqrt2_v<float> / static_cast<float>(side - 1);
 }
 
-} // namespace
-
-Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
-                                   Progress& progress, std::vector<AskedFile>* asked)
+// The description and the mesh that people see, as it is before cleaning.
+Result<void> importLight(const std::filesystem::path& source, CompiledLight& light,
+                         std::vector<AskedFile>* asked)
 {
-    CompiledLight light;
-    MeshAsset& mesh = light.asset.mesh;
-    CompileReport& report = light.asset.report;
-    auto start = std::chrono::steady_clock::now();
-    const auto endStage = [&](const char* stage) {
-        const auto now = std::chrono::steady_clock::now();
-        report.times.push_back({stage, std::chrono::duration<double>(now - start).count()});
-        start = now;
-    };
-
-    // The description, and the mesh that people see.
-    if (const std::uint64_t bytes =
-            3ull * options.shells * options.side * options.side * kFieldCoefficients;
-        bytes > kMaxFieldBytes)
-        return Error{fmt::format("{}: {} shells of {}² take {} bytes, at most {}; ask for fewer or "
-                                 "coarser ones",
-                                 source.string(), options.shells, options.side, bytes,
-                                 kMaxFieldBytes)};
     const auto spec = readLightSpec(source, asked);
     if (!spec)
         return spec.error();
     light.spec = *spec;
+    MeshAsset& mesh = light.asset.mesh;
     if (spec->shape == EmitterShape::Mesh) {
         std::vector<AskedFile> byMesh; // beside the mesh
         auto imported = importMesh(spec->mesh, &byMesh);
@@ -119,67 +102,90 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
         if (!imported)
             return imported.error();
         mesh = std::move(imported->mesh);
-        report.warnings = std::move(imported->warnings);
+        light.asset.report.warnings = std::move(imported->warnings);
     } else {
         mesh = makeShapeMesh(*spec);
     }
     mesh.name = source.stem().string().substr(0, kMaxNameBytes);
-    if (spec->shape == EmitterShape::Spot &&
-        spec->outerAngle - spec->innerAngle < cellAngle(options.side))
+    return {};
+}
+
+std::vector<SelfVisibility> bakeSelfVisibility(const LightSpec& spec, const MeshAsset& mesh,
+                                               Progress& progress)
+{
+    if (spec.shape == EmitterShape::Mesh) {
+        BakeOptions self;
+        self.field = false;
+        return bakeMesh(mesh.positions, mesh.normals, mesh.indices, self, progress).selfVisibility;
+    }
+    SelfVisibility open; // convex: it hides nothing from itself
+    open.fill(128);
+    return std::vector<SelfVisibility>(mesh.positions.size(), open);
+}
+
+} // namespace
+
+Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
+                                   Progress& progress, std::vector<AskedFile>* asked)
+{
+    CompiledLight light;
+    const LightSpec& spec = light.spec;
+    const std::string place = source.string();
+    MeshAsset& mesh = light.asset.mesh;
+    CompileReport& report = light.asset.report;
+    if (const auto fits = checkFieldBytes(options.shells, options.side, 3, place); !fits)
+        return fits.error();
+    {
+        const StageTimer timer(report.times, "import");
+        if (const auto imported = importLight(source, light, asked); !imported)
+            return imported.error();
+    }
+    if (spec.shape == EmitterShape::Spot &&
+        spec.outerAngle - spec.innerAngle < cellAngle(options.side))
         report.warnings.push_back(fmt::format(
             "the falloff of {:.1f} degrees is narrower than a cell of the field, {:.1f} "
             "degrees; raise --max-side",
-            spec->outerAngle - spec->innerAngle, cellAngle(options.side)));
-    endStage("import");
-
-    // The same steps as a mesh that only casts shadows.
-    const auto cleaned = cleanMesh(mesh);
-    if (!cleaned)
-        return fail(cleaned.error(), source.string());
-    report.clean = *cleaned;
-    endStage("clean");
-    report.order = orderClusters(mesh);
-    endStage("order");
-    if (const auto quantised = quantizeMesh(mesh, options.encode); !quantised)
-        return fail(quantised.error(), source.string());
-    endStage("quantise");
-    if (spec->shape == EmitterShape::Mesh) {
-        BakeOptions self;
-        self.field = false;
-        mesh.selfVisibility =
-            bakeMesh(mesh.positions, mesh.normals, mesh.indices, self, progress).selfVisibility;
-    } else { // convex: it hides nothing from itself
-        SelfVisibility open;
-        open.fill(128);
-        mesh.selfVisibility.assign(mesh.positions.size(), open);
+            spec.outerAngle - spec.innerAngle, cellAngle(options.side)));
+    if (const auto prepared = prepareMesh(light.asset, place, options.encode); !prepared)
+        return prepared.error();
+    {
+        const StageTimer timer(report.times, "self-visibility");
+        mesh.selfVisibility = bakeSelfVisibility(spec, mesh, progress);
     }
-    endStage("self-visibility");
 
-    // What the light sends to the space around it.
-    const auto emitter = makeEmitter(*spec, mesh, options.directions);
+    const auto emitter = makeEmitter(spec, mesh, options.directions);
     if (!emitter)
-        return fail(emitter.error(), source.string());
+        return fail(emitter.error(), place);
     light.power = (*emitter)->power();
     if (!(light.power.r + light.power.g + light.power.b > 0))
-        return Error{fmt::format("{}: the light is black; its texture has no bright pixel",
-                                 source.string())};
-    const auto fieldSettings = fieldOptions(*spec, options, (*emitter)->bounds().radius);
+        return Error{place + ": the light is black; give it a texture with a bright pixel"};
+    const auto fieldSettings = fieldOptions(spec, options, (*emitter)->bounds().radius);
     if (!fieldSettings)
-        return fail(fieldSettings.error(), source.string());
-    FieldSamples field = bakeLightField(**emitter, *fieldSettings, progress);
-    if (spec->shape == EmitterShape::Mesh)
-        field.head.directions = options.directions;
-    endStage("bake");
-    if (options.adaptThreshold > 0)
-        report.adapt = adaptLightShells(field, options.adaptThreshold);
-    mesh.field = quantiseField(field);
-    endStage("adapt");
-
-    auto bytes = encodeMeshAsset(mesh, options.encode);
-    if (!bytes)
-        return fail(bytes.error(), source.string());
-    light.asset.bytes = std::move(*bytes);
-    endStage("encode");
+        return fail(fieldSettings.error(), place);
+    FieldSamples field;
+    std::vector<Probe> probes;
+    {
+        // What the light sends to the space around it.
+        const StageTimer timer(report.times, "bake");
+        field = bakeLightField(**emitter, *fieldSettings, progress);
+        if (spec.shape == EmitterShape::Mesh)
+            field.head.directions = options.directions;
+        probes = probeLight(**emitter, field.head);
+    }
+    {
+        const StageTimer timer(report.times, "adapt");
+        const float brightest = brightestRadiance(field);
+        if (options.adaptThreshold > 0)
+            report.adapt = adaptShells(field, {options.adaptThreshold, brightest});
+        mesh.field = quantiseField(field);
+        if (brightest > 0)
+            mesh.field->errors = measureRadianceErrors(field, *mesh.field, probes, brightest);
+        else
+            report.warnings.push_back("no place around the light is lit: check which way its "
+                                      "triangles wind");
+    }
+    if (const auto encoded = encodeAsset(light.asset, place, options.encode); !encoded)
+        return encoded.error();
     return light;
 }
 

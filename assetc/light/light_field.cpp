@@ -32,21 +32,6 @@ std::vector<Sh4> sampleEmitter(const Emitter& emitter, const ShadowField& field,
     return samples;
 }
 
-// Mean radiance of the brightest place over g(r), in the strongest channel.
-float brightest(const FieldSamples& field)
-{
-    const std::size_t shells = field.head.shellSides.size();
-    float largest = 0;
-    for (std::size_t grid = 0; grid < 3 * shells; ++grid) {
-        const float r = shellRadius(field.head, grid % shells);
-        const std::size_t first = firstNode(field.head, grid);
-        const std::size_t side = field.head.shellSides[grid % shells];
-        for (std::size_t i = first; i < first + side * side; ++i)
-            largest = std::max(largest, field.nodes[i].c[0] / (kSqrt4Pi * fieldDecay(r * r)));
-    }
-    return largest;
-}
-
 } // namespace
 
 FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& options,
@@ -68,9 +53,40 @@ FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& opt
     return samples;
 }
 
-AdaptReport adaptLightShells(FieldSamples& field, float threshold)
+float brightestRadiance(const FieldSamples& field)
 {
-    return adaptShells(field, {threshold, brightest(field)});
+    const std::size_t shells = field.head.shellSides.size();
+    float largest = 0;
+    for (std::size_t grid = 0; grid < 3 * shells; ++grid) {
+        const float r = shellRadius(field.head, grid % shells);
+        const std::size_t first = firstNode(field.head, grid);
+        const std::size_t side = field.head.shellSides[grid % shells];
+        for (std::size_t i = first; i < first + side * side; ++i)
+            largest = std::max(largest, field.nodes[i].c[0] / (kSqrt4Pi * fieldDecay(r * r)));
+    }
+    return largest;
+}
+
+std::vector<Probe> probeLight(const Emitter& emitter, const ShadowField& field)
+{
+    // Every second of them: a light, unlike an object, is dark inside but nowhere without a truth.
+    constexpr std::size_t kStep = 2;
+    const ProbePoints drawn = drawProbes(field);
+    std::vector<Probe> probes((drawn.probes.size() + kStep - 1) / kStep * 3);
+    tbb::parallel_for(std::size_t{0}, probes.size() / 3, [&](std::size_t i) {
+        const auto place = [&](std::size_t point) { // 0: the probe, 1 and 2: on its shells
+            const PointSet& points = drawn.points.points;
+            const std::size_t p = 3 * kStep * i + point;
+            return field.center + field.radius * vec3(points.x[p], points.y[p], points.z[p]);
+        };
+        const RadianceSh exact = emitter.radianceAt(place(0)), low = emitter.radianceAt(place(1)),
+                         high = emitter.radianceAt(place(2)), noise = emitter.noiseAt(place(0));
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Probe& at = drawn.probes[kStep * i];
+            probes[3 * i + c] = {at.direction, at.shell, exact[c], low[c], high[c], noise[c]};
+        }
+    });
+    return probes;
 }
 
 } // namespace penumbra

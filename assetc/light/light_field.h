@@ -1,7 +1,8 @@
 // From an emitter to its source radiance field (Zhou et al. 2005, section 3.1).
 #pragma once
 
-#include "assetc/adapt.h"
+#include "assetc/bake/field_samples.h"
+#include "assetc/bake/probes.h"
 #include "assetc/light/emitter.h"
 #include "assetc/progress.h"
 
@@ -19,9 +20,12 @@ struct LightFieldOptions {
 FieldSamples bakeLightField(const Emitter& emitter, const LightFieldOptions& options,
                             Progress& progress);
 
-// adaptShells with a threshold that is relative to the light. Radiance has no unit size and falls
-// with g(r), so the error of Eq. (1) is divided by g(r) and by the largest mean radiance over g(r)
-// of any node: `threshold` is a part of the light at the brightest place, wherever the shell.
-AdaptReport adaptLightShells(FieldSamples& field, float threshold);
+// The largest mean radiance over g(r) of any node, in the strongest channel. Radiance has no unit
+// size and falls with g(r), so thresholds and errors are parts of this times g(r): of the light at
+// its brightest place, wherever the shell.
+float brightestRadiance(const FieldSamples& field);
+
+// The exact radiance at random points off the grid, [point][3 channels], for measureRadianceErrors.
+std::vector<Probe> probeLight(const Emitter& emitter, const ShadowField& field);
 
 } // namespace penumbra

@@ -51,22 +51,28 @@ mat3 frameAround(vec3 z)
 
 } // namespace
 
-// What radianceAt adds up for one place.
+// What is added up for one place.
 struct MeshEmitter::Sum {
     vec3 position{0};
     mat3 cone{1};             // z: its axis
     float coneSolidAngle = 0; // sr
     std::array<double, 16> sh{};
+    std::array<double, 16> difference{}; // samples of even index less those of odd index
 
-    // A sample along the unit `w` that meets the surface at `distance` under the cosine `cosine`.
-    void add(vec3 w, float distance, float cosine, float area, std::size_t samples)
+    // Sample `index` of a set, along the unit `w`, that meets the surface at `distance` under the
+    // cosine `cosine`.
+    void add(vec3 w, float distance, float cosine, float area, std::size_t samples,
+             std::size_t index)
     {
         const double directions = 1.0 / coneSolidAngle;
         const double surface = double(distance) * distance / (double(area) * cosine);
         const double weight = 1 / ((directions + surface) * static_cast<double>(samples));
         const Sh4 basis = shBasis(w);
-        for (std::size_t k = 0; k < 16; ++k)
-            sh[k] += weight * basis.c[k];
+        for (std::size_t k = 0; k < 16; ++k) {
+            const double value = weight * basis.c[k];
+            sh[k] += value;
+            difference[k] += index % 2 == 0 ? value : -value;
+        }
     }
 };
 
@@ -158,7 +164,7 @@ void MeshEmitter::addDirections(Sum& sum) const
             const float facing = -dot(normal, w);
             const float cosine = m_twoSided ? std::abs(facing) : facing;
             if (cosine > 0)
-                sum.add(w, rays.ray.tfar[k], cosine, m_area, m_unitSquare.size());
+                sum.add(w, rays.ray.tfar[k], cosine, m_area, m_unitSquare.size(), first + k);
         }
     }
 }
@@ -170,6 +176,7 @@ void MeshEmitter::addSurface(Sum& sum) const
     struct Candidate {
         vec3 w;
         float distance, cosine;
+        std::size_t index;
     };
     std::array<Candidate, kPacket> candidates;
     std::size_t count = 0;
@@ -191,10 +198,11 @@ void MeshEmitter::addSurface(Sum& sum) const
         for (std::size_t k = 0; k < count; ++k)
             if (!(rays.tfar[k] < 0)) // Embree's mark of a hit
                 sum.add(candidates[k].w, candidates[k].distance, candidates[k].cosine, m_area,
-                        m_points.size());
+                        m_points.size(), candidates[k].index);
         count = 0;
     };
-    for (const SurfacePoint& point : m_points) {
+    for (std::size_t i = 0; i < m_points.size(); ++i) {
+        const SurfacePoint& point = m_points[i];
         const vec3 to = point.position - sum.position;
         const float distance = glm::length(to);
         if (!(distance > 0))
@@ -204,7 +212,7 @@ void MeshEmitter::addSurface(Sum& sum) const
         const float cosine = m_twoSided ? std::abs(facing) : facing;
         if (!(cosine > 0))
             continue;
-        candidates[count++] = {w, distance, cosine};
+        candidates[count++] = {w, distance, cosine, i};
         if (count == kPacket)
             flush();
     }
@@ -212,7 +220,7 @@ void MeshEmitter::addSurface(Sum& sum) const
         flush();
 }
 
-RadianceSh MeshEmitter::radianceAt(vec3 position) const
+MeshEmitter::Sum MeshEmitter::sumAt(vec3 position) const
 {
     Sum sum;
     sum.position = position;
@@ -227,11 +235,27 @@ RadianceSh MeshEmitter::radianceAt(vec3 position) const
     }
     addDirections(sum);
     addSurface(sum);
+    return sum;
+}
+
+RadianceSh MeshEmitter::colored(const std::array<double, 16>& sh) const
+{
     RadianceSh result;
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t k = 0; k < 16; ++k)
-            result[c].c[k] = static_cast<float>(sum.sh[k] * m_radiance[static_cast<int>(c)]);
+            result[c].c[k] = static_cast<float>(sh[k] * m_radiance[static_cast<int>(c)]);
     return result;
+}
+
+RadianceSh MeshEmitter::radianceAt(vec3 position) const
+{
+    return colored(sumAt(position).sh);
+}
+
+// The estimates by either half are (sh ± difference); half of their difference is `difference`.
+RadianceSh MeshEmitter::noiseAt(vec3 position) const
+{
+    return colored(sumAt(position).difference);
 }
 
 vec3 MeshEmitter::power() const

@@ -25,6 +25,7 @@ public:
 
     [[nodiscard]] Sphere bounds() const override { return m_bounds; }
     [[nodiscard]] RadianceSh radianceAt(vec3 position) const override;
+    [[nodiscard]] RadianceSh noiseAt(vec3 position) const override;
     [[nodiscard]] vec3 power() const override;
 
 private:
@@ -34,6 +35,8 @@ private:
     struct Sum;
 
     void spreadPoints(const MeshAsset& mesh);
+    [[nodiscard]] Sum sumAt(vec3 position) const;
+    [[nodiscard]] RadianceSh colored(const std::array<double, 16>& sh) const;
     void addDirections(Sum& sum) const;
     void addSurface(Sum& sum) const;
 

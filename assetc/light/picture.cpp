@@ -9,21 +9,10 @@
 #include <memory>
 #include <string_view>
 
-// stb_image, private to this file, without the decoders that are not asked for.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
-#define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 4096
-#include <stb/stb_image.h>
-#pragma GCC diagnostic pop
+#include "runtime/stb_image.h"
 
 namespace penumbra {
 

@@ -1,7 +1,9 @@
 #include "assetc/light/spec.h"
 
+#include "assetc/file_type.h"
 #include "assetc/import/folder.h"
 #include "assets/json_reader.h"
+#include "runtime/assert.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -12,6 +14,7 @@ namespace penumbra {
 namespace {
 
 constexpr std::uint64_t kMaxSpecBytes = 64 << 10;
+constexpr std::uint64_t kMaxReadBytes = 1u << 30; // of a wrong file, to say what it is
 constexpr float kMaxEmission = 1e12f; // of power and intensity; their radiance is checked later
 
 struct ShapeMembers {
@@ -139,11 +142,31 @@ std::filesystem::path confined(const JsonReader& reader, const std::filesystem::
 
 } // namespace
 
+const char* shapeName(EmitterShape shape)
+{
+    for (const ShapeMembers& known : shapes())
+        if (known.shape == shape)
+            return known.type;
+    PENUMBRA_ASSERT(false, "shape {}", static_cast<int>(shape));
+    return "";
+}
+
+const char* unitName(EmissionUnit unit)
+{
+    return unit == EmissionUnit::Radiance ? "W/(m² sr)"
+           : unit == EmissionUnit::Power  ? "W"
+                                          : "W/sr";
+}
+
 Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
-    const auto bytes = readFile(path, kMaxSpecBytes);
+    const auto bytes = readFile(path, kMaxReadBytes);
     if (!bytes)
         return bytes.error();
+    if (const std::string other = otherKindText(*bytes, FileType::LightSpec); !other.empty())
+        return Error{fmt::format("{}: {}; assetc light reads a light description "
+                                 "(docs/light_spec.md)",
+                                 path.string(), other)};
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const auto document = parseJson(text, kMaxSpecBytes);
     if (!document)

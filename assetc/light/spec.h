@@ -32,6 +32,9 @@ PENUMBRA_CONST float kMinEmitterSize = 1e-4f, kMaxEmitterSize = 1e4f; // metres
 // grid.
 PENUMBRA_CONST float kMinOuterAngle = 1, kMaxOuterAngle = 89, kMinFalloffAngle = 0.1f;
 
+const char* shapeName(EmitterShape shape); // as in the description
+const char* unitName(EmissionUnit unit);   // "W/(m² sr)"
+
 // Error: the first problem of the file with its place; unknown members are problems too. `asked`,
 // if any, gets the files that the spec names.
 Result<LightSpec> readLightSpec(const std::filesystem::path& path,

@@ -5,24 +5,11 @@
 #include <cstring>
 #include <memory>
 
-// The stb libraries, private to this file. Only PNG: other decoders of stb_image have known holes.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wshadow"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
+// Only PNG: other decoders of stb_image have known holes.
 #define STBI_ONLY_PNG
-#define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 16384
-#include <stb/stb_image.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
+#include "runtime/stb_image.h"
+#include "runtime/stb_image_write.h"
 
 namespace penumbra {
 

@@ -125,7 +125,7 @@ TEST(AdaptShells, FitLeavesNoBias)
                 decayOf(field, s) * curve(d, 0.05f * static_cast<float>(s));
         }
     const FieldSamples fine = field;
-    adaptShells(field, {0.01f});
+    adaptShells(field, {0.05f});
     ASSERT_LT(field.head.shellSides[0], 33);
     const std::vector<Sh4> read = refineNodes(field, 0, 33);
     double bias = 0, squares = 0;
@@ -135,7 +135,7 @@ TEST(AdaptShells, FitLeavesNoBias)
         squares += off * off / static_cast<double>(read.size());
     }
     EXPECT_GT(squares, 0);
-    EXPECT_LT(std::abs(bias), 0.1 * std::sqrt(squares));
+    EXPECT_LT(std::abs(bias), 0.25 * std::sqrt(squares));
     const std::uint32_t side = field.head.shellSides[0];
     for (std::uint32_t i = 0; i < side; ++i)
         EXPECT_FLOAT_EQ(c0(field, 0, 0, i), c0(field, 0, 0, side - 1 - i));

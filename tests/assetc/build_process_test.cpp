@@ -12,7 +12,7 @@ protected:
     // Assets that take long enough, some 0.1 s each, to be hit.
     void writeSlow(int count)
     {
-        manifest["defaults"]["mesh"] = {{"shells", 6}, {"maxSide", 17}, {"directions", 1024}};
+        manifest["defaults"]["mesh"] = {{"shells", 6}, {"maxSide", 17}, {"directions", 4096}};
         writePyramids(count);
     }
     [[nodiscard]] std::unique_ptr<BackgroundProgram> start(const std::string& more = "") const
@@ -42,7 +42,7 @@ protected:
 
 TEST_F(BuildProcess, KilledBuildsResume)
 {
-    writeSlow(8);
+    writeSlow(10);
     build(0, "", "good");
     const auto good = files("good");
     for (int kill = 0; kill < 8; kill += 3) {
@@ -61,7 +61,7 @@ TEST_F(BuildProcess, KilledBuildsResume)
 
 TEST_F(BuildProcess, InterruptEndsSoonAndLeavesNothing)
 {
-    writeSlow(8);
+    writeSlow(10);
     build(0, "", "good");
     for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
         const auto running = start();

@@ -257,4 +257,142 @@ TEST_F(BuildTest, WrongUsageIsTwo)
     EXPECT_NE(outcome.err.find("cannot create the folder"), std::string::npos) << outcome.err;
 }
 
+namespace {
+
+// Two squares on nodes of their own, with the buffer beside the file.
+nlohmann::json twoSquares(const TemporaryFolder& folder, double z)
+{
+    auto square = squareGltf();
+    square["buffers"][0]["uri"] = "square.bin";
+    const float height = static_cast<float>(z);
+    folder.write("square.bin", bytesOf<float>({0, 0, 0, 1, 0, 0, 1, 1, height, 0, 1, 0}) +
+                                   bytesOf<std::uint16_t>({0, 1, 2, 0, 2, 3}) +
+                                   bytesOf<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
+    square["meshes"].push_back(square["meshes"][0]);
+    square["nodes"] = {{{"name", "left"}, {"mesh", 0}},
+                       {{"name", "right"}, {"mesh", 1}, {"translation", {2, 0, 0}}}};
+    square["scenes"] = {{{"nodes", {0, 1}}}};
+    square["scene"] = 0;
+    return square;
+}
+
+} // namespace
+
+TEST_F(BuildTest, ScenesAreFoldersOfParts)
+{
+    manifest["defaults"]["scene"] = manifest["defaults"]["mesh"];
+    manifest["assets"] = {{{"name", "a/room"}, {"kind", "scene"}, {"source", "room.gltf"}}};
+    writeManifest();
+    folder.write("room.gltf", twoSquares(folder, 0).dump());
+    const auto first = build();
+    ASSERT_EQ(named(first, "built"), Names({"a/room"})) << outcome.err;
+    EXPECT_EQ(first["assets"][0]["output"], "a/room/scene.json");
+    const nlohmann::json parts = {"a/room/left.glb", "a/room/right.glb"};
+    EXPECT_EQ(first["assets"][0]["parts"], parts);
+    EXPECT_EQ(first["assets"][0]["compile"]["assets"][0]["field"]["shells"], 3);
+    const auto made = files();
+    EXPECT_EQ(made.size(), 3u);
+    std::size_t bytes = 0;
+    for (const auto& [name, content] : made)
+        bytes += content.size();
+    EXPECT_EQ(first["assets"][0]["bytes"], bytes);
+    // As the command writes it.
+    const Outcome command = runProgram(
+        PENUMBRA_ASSETC,
+        fmt::format("bake '{}' -o '{}' --per-node --shells 3 --max-side 5 --directions 32",
+                    at("room.gltf"), at("command")),
+        folder);
+    ASSERT_EQ(command.code, 0) << command.err;
+    EXPECT_EQ(readText(folder / "command/scene.json"), made.at("a/room/scene.json"));
+    EXPECT_EQ(readText(folder / "command/right.glb"), made.at("a/room/right.glb"));
+
+    const auto second = build();
+    EXPECT_EQ(named(second, "unchanged"), Names({"a/room"}));
+    EXPECT_EQ(second["assets"][0]["parts"], parts);
+    EXPECT_EQ(second["assets"][0]["bytes"], bytes);
+    const std::string depfile = readText(folder / "built/a/room/scene.json.d");
+    EXPECT_NE(depfile.find("square.bin"), std::string::npos) << depfile;
+
+    std::filesystem::remove(folder / "built/a/room/left.glb"); // a part is an output
+    EXPECT_EQ(named(build(), "built"), Names({"a/room"}));
+    folder.write("built/a/room/right.glb", "spoilt");
+    EXPECT_EQ(named(build(), "built"), Names({"a/room"}));
+    EXPECT_EQ(files(), made);
+    twoSquares(folder, 0.5); // the buffer
+    EXPECT_EQ(named(build(), "built"), Names({"a/room"}));
+
+    auto renamed = twoSquares(folder, 0.5);
+    renamed["nodes"][1]["name"] = "east";
+    folder.write("room.gltf", renamed.dump());
+    EXPECT_EQ(build()["stale"], nlohmann::json::array({"a/room/right.glb"}));
+    EXPECT_EQ(build()["stale"], nlohmann::json::array({"a/room/right.glb"}));
+    EXPECT_TRUE(std::filesystem::exists(folder / "built/a/room/right.glb"));
+}
+
+TEST_F(BuildTest, AFolderOfPartsIsTheScenesOwn)
+{
+    folder.write("room.gltf", twoSquares(folder, 0).dump());
+    folder.write("m.obj", pyramid(1));
+    manifest["assets"] = {{{"name", "room/deep/left"}, {"source", "m.obj"}},
+                          {{"name", "room"}, {"kind", "scene"}, {"source", "room.gltf"}}};
+    writeManifest();
+    build(1);
+    EXPECT_NE(outcome.err.find("assets[0].name lies in the folder of the scene assets[1]"),
+              std::string::npos)
+        << outcome.err;
+    // A part would replace a source.
+    folder.write("art/room/left.glb", "x");
+    manifest["assets"][0] = {{"name", "m"}, {"source", "art/room/left.glb"}};
+    writeManifest();
+    const auto report = build(1, "", "art");
+    EXPECT_EQ(named(report, "built"), Names());
+    EXPECT_NE(outcome.err.find("would replace the source of assets[0]"), std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(readText(folder / "art/room/left.glb"), "x");
+}
+
+TEST_F(BuildTest, ALightDoesNotReplaceTheMeshThatItNames)
+{
+    folder.write("art/square.gltf", squareGltf().dump());
+    ASSERT_EQ(runProgram(PENUMBRA_ASSETC,
+                         fmt::format("bake '{}' -o '{}' --no-field", at("art/square.gltf"),
+                                     at("art/lamp.glb")),
+                         folder)
+                  .code,
+              0);
+    const std::string mesh = readText(folder / "art/lamp.glb");
+    folder.write("art/lamp.json",
+                 R"({"version":1,"type":"mesh","source":"lamp.glb","radiance":[1,1,1]})");
+    manifest["assets"] = {{{"name", "lamp"}, {"source", "art/lamp.json"}}};
+    manifest["defaults"]["light"] = manifest["defaults"]["mesh"];
+    writeManifest();
+    build(1, "", "art");
+    const std::string says = at("art/lamp.glb") + ": the output would replace " +
+                             at("art/lamp.glb") + ", which it is made of";
+    EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+    EXPECT_EQ(readText(folder / "art/lamp.glb"), mesh);
+    const Outcome command = runProgram(PENUMBRA_ASSETC,
+                                       fmt::format("light '{}' -o '{}' --shells 3 --max-side 5",
+                                                   at("art/lamp.json"), at("art/lamp.glb")),
+                                       folder);
+    EXPECT_EQ(command.code, 2);
+    EXPECT_NE(command.err.find(says), std::string::npos) << command.err;
+    EXPECT_EQ(readText(folder / "art/lamp.glb"), mesh);
+}
+
+// JSON cannot hold them as they are; the record does.
+TEST_F(BuildTest, NamesNeedNotBeUtf8)
+{
+    for (const char* name : {"\xff.mtl", "a%ff.mtl"})
+        folder.write(name, "newmtl red\nKd 1 0 0\n");
+    folder.write("m.obj",
+                 std::string("mtllib \xff.mtl\nmtllib a%ff.mtl\nusemtl red\n") + pyramid(1));
+    manifest["assets"] = {{{"name", "m"}, {"source", "m.obj"}}};
+    writeManifest();
+    EXPECT_EQ(named(build(), "built"), Names({"m"})) << outcome.err;
+    EXPECT_EQ(named(build(), "unchanged"), Names({"m"}));
+    folder.write("\xff.mtl", "newmtl red\nKd 0 1 0\n");
+    EXPECT_EQ(named(build(), "built"), Names({"m"}));
+}
+
 } // namespace penumbra

@@ -175,6 +175,9 @@ TEST_F(CommandLine, WrongKindsOfFileAreNamed)
     folder.write("sky.exr", "\x76\x2f\x31\x01....");
     folder.write("scene.fbx", "Kaydara FBX Binary  ....");
     folder.write("empty.glb", "");
+    folder.write("cut.glb", "glTF....");
+    folder.write("lamp.json", R"({"version":1,"type":"sphere","radius":1,"power":[1,1,1]})");
+    folder.write("dust.obj", "v 0 0 0\nv 1e-7 0 0\nv 0 1e-7 0\nf 1 2 3\n");
     folder.write("what.dat", "\x01\x02\x03");
     folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for (const auto& [command, says] :
@@ -185,6 +188,14 @@ TEST_F(CommandLine, WrongKindsOfFileAreNamed)
           {"bake " + at("sky.exr") + " -o " + at("o.glb"),
            "an OpenEXR picture; compile it with assetc environment"},
           {"bake " + at("png.glb") + " -o " + at("o.glb"), "a PNG picture"},
+          {"bake " + at("lamp.json") + " -o " + at("o.glb"),
+           "a light description; compile it with assetc light"},
+          {"build " + at("cut.glb") + " -o " + at("o"),
+           "a damaged binary glTF file; assetc build reads a manifest"},
+          {"build " + at("lamp.json") + " -o " + at("o"), "compile it with assetc light"},
+          {"light " + at("a.obj") + " -o " + at("o.glb"),
+           "a Wavefront OBJ mesh; compile it with assetc bake; assetc light reads"},
+          {"bake " + at("dust.obj") + " -o " + at("o.glb"), "scale it, its unit is the metre"},
           {"environment " + at("a.obj") + " -o " + at("o.env"),
            "a Wavefront OBJ mesh; compile it with assetc bake"}}) {
         const Outcome outcome = run(command);
@@ -192,6 +203,87 @@ TEST_F(CommandLine, WrongKindsOfFileAreNamed)
         EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     }
+}
+
+TEST_F(CommandLine, InspectAndValidateReadWhatPeopleAndAssetcWrite)
+{
+    folder.write("a.gltf", squareGltf().dump());
+    folder.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
+                                std::string("\x80\x40\x20\x81\x80\x40\x20\x81", 8));
+    folder.write("lamp.json", R"({"version":1,"type":"mesh","source":"a.gltf","power":[1,2,3]})");
+    folder.write("m.json", R"({"version":1,"assets":[{"name":"sky","source":"sky.hdr"}]})");
+    const std::string report = " --report ";
+    ASSERT_EQ(run("bake " + at("a.gltf") + " -o " + at("parts") + " --per-node --no-field" +
+                  report + at("r1.json"))
+                  .code,
+              0);
+    ASSERT_EQ(
+        run("bake " + at("a.gltf") + " -o " + at("a.glb") + " --no-field" + report + at("r2.json"))
+            .code,
+        0);
+    ASSERT_EQ(
+        run("light " + at("lamp.json") + " -o " + at("l.glb") + quick + report + at("r3.json"))
+            .code,
+        0);
+    ASSERT_EQ(
+        run("environment " + at("sky.hdr") + " -o " + at("s.env") + report + at("r4.json")).code,
+        0);
+    ASSERT_EQ(run("build " + at("m.json") + " -o " + at("built") + report + at("r5.json")).code, 0);
+    ASSERT_EQ(run("validate " + at("a.glb") + report + at("r6.json")).code, 0);
+    ASSERT_EQ(run("inspect " + at("a.glb") + report + at("r7.json")).code, 0);
+    for (const auto& [name, type, what, says] :
+         {std::tuple{"lamp.json", "light description", "a light description", "a.gltf"},
+          {"parts/scene.json", "scene", "a scene of parts", "1 with a mesh"},
+          {"r1.json", "report", "a report of assetc bake", "report"},
+          {"r2.json", "report", "a report of assetc bake", "report"},
+          {"r3.json", "report", "a report of assetc light", "report"},
+          {"r4.json", "report", "a report of assetc environment", "report"},
+          {"r5.json", "report", "a report of assetc build", "report"},
+          {"r6.json", "report", "a report of assetc validate", "report"},
+          {"r7.json", "report", "a report of assetc inspect", "report"}}) {
+        const Outcome human = run(std::string("inspect ") + at(name) + report + at("i.json"));
+        EXPECT_EQ(human.code, 0) << name << human.err;
+        EXPECT_NE(human.out.find(says), std::string::npos) << name << human.out;
+        EXPECT_EQ(nlohmann::json::parse(readText(folder / "i.json"))["type"], type) << name;
+        EXPECT_EQ(readText(folder / "i.json"), run("inspect --json " + at(name)).out);
+        EXPECT_EQ(run("validate " + at(name)).code, 0) << name;
+        EXPECT_EQ(nlohmann::json::parse(run("validate --json " + at(name)).out)["what"], what);
+    }
+    EXPECT_EQ(run("inspect " + at("a.glb") + report + at("a.glb")).code, 2);
+    EXPECT_EQ(run("validate " + at("lamp.json") + report + at("lamp.json")).code, 2);
+}
+
+TEST_F(CommandLine, ValidateChecksLightsAndScenesAsTheirReadersDo)
+{
+    const std::string place = R"("Transform":{"position":[0,0,0],"rotation":[0,0,0,1],"scale":1})";
+    const std::string start = R"({"version":1,"entities":[)";
+    for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+             {R"({"version":1,"type":"sphere","radius":1})", "needs exactly one of"},
+             {R"({"version":1,"type":"cone","power":[1,1,1]})", "is not one of sphere"},
+             {R"({"version":1,"entities":{}})", "entities is not an array"},
+             {start + R"({"Name":{"value":"a"}}]})", "entities[0] has no \"Transform\""},
+             {start + "{" + place + R"(,"Parent":{"entity":0}}]})", "is no earlier entity"},
+             {start + "{" + place + R"(,"MeshInstance":{"asset":"a.glb"}}]})",
+              "entities[0].MeshInstance.asset names a file"},
+             {start + "{" + place + R"(,"MeshInstance":{"asset":"../a.glb"}}]})",
+              "not a plain path"},
+             {start + R"({"Transform":{"position":[0,0],"rotation":[0,0,0,1],"scale":1}}]})",
+              "position does not have 3 numbers"},
+             {start + R"({"Transform":{"position":[0,0,0],"rotation":[0,0,0,2],"scale":1}}]})",
+              "rotation"},
+             {start + "{" + place + R"(}],"lights":[{"entity":1,"type":"point","intensity":1}]})",
+              "lights[0].entity is none of the 1 entities"},
+             {R"({"version":2,"entities":[]})", "version is not 1"}}) {
+        folder.write("x.json", text);
+        const Outcome outcome = run("validate " + at("x.json") + " --report " + at("r.json"));
+        EXPECT_EQ(outcome.code, 1) << text;
+        EXPECT_NE(outcome.out.find(says), std::string::npos) << text << outcome.out;
+        const auto report = nlohmann::json::parse(readText(folder / "r.json"));
+        EXPECT_EQ(report["valid"], false);
+        EXPECT_GE(report["problems"].size(), 1u) << outcome.out;
+        EXPECT_EQ(run("inspect " + at("x.json") + " --report " + at("none.json")).code, 1);
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "none.json"));
 }
 
 TEST_F(CommandLine, WrongCommandsAreNamed)

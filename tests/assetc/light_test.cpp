@@ -355,4 +355,78 @@ TEST_F(Light, ReachMovesTheLastShell)
                 0.02);
 }
 
+// The stored error against the closed form of a sphere, c_0 = 2 pi L (1 - cos a) Y_0 and so on by
+// rotation about the axis: c_l = 2 pi L integral P_l, in the unit of the asset's format.
+TEST_F(Light, ErrorsAreThoseOfTheClosedForm)
+{
+    const MeshAsset mesh =
+        stored(R"({"version":1,"type":"sphere","radius":0.5,"radiance":[4,4,4]})", {12, 17, 64});
+    ASSERT_TRUE(mesh.field->errors);
+    const FieldErrors& errors = *mesh.field->errors;
+    const LightFieldReader reader(*mesh.field);
+    std::mt19937 random(4);
+    const auto exact = [](vec3 p) {
+        const float sine = 0.5f / length(p), x = std::sqrt(1 - sine * sine);
+        // Integrals of the Legendre polynomials over the cap, without what rounding costs.
+        const float cap = sine * sine / (1 + x);
+        const std::array<float, 4> integral = {cap, sine * sine / 2, x * sine * sine / 2,
+                                               (5 * x * x - 1) * sine * sine / 8};
+        Sh4 basis = shBasis(normalize(-p));
+        for (int k = 0; k < 16; ++k)
+            basis.c[k] *= 2 * kPi * 4 * integral[k < 1 ? 0 : k < 4 ? 1 : k < 9 ? 2 : 3];
+        return basis;
+    };
+    // Brightest: on the surface, half of all directions; g(1) = 1 / 1.25.
+    const float unit = 4 * 0.5f * 1.25f;
+    double squares = 0;
+    constexpr int kPoints = 4000;
+    for (int i = 0; i < kPoints; ++i) {
+        // Even between the shells, but for the last interval, which readers fade.
+        const float t = (static_cast<float>(i) + 0.5f) / kPoints * (10.0f / 11);
+        const float r = std::pow(64.0f, t);
+        const vec3 p = 0.5f * r * randomDirection(random);
+        const Sh4 a = exact(p), b = reader.radiance(p);
+        for (int k = 0; k < 16; ++k) {
+            const double d = (a.c[k] - b.c[k]) / (unit * fieldDecay(r * r));
+            squares += d * d / (4 * kPi);
+        }
+    }
+    // The stored one has that interval as well, which adds little to the sum.
+    const double rms = std::sqrt(squares / kPoints * 10 / 11);
+    RecordProperty("rms", std::to_string(rms));
+    EXPECT_GE(errors.points, 4096u);
+    EXPECT_NEAR(errors.total.rms / rms, 1, 0.05) << rms;
+    EXPECT_EQ(errors.directions.rms, 0);
+    EXPECT_EQ(errors.bandLimit.rms, 0);
+}
+
+// A part of the light: a strong one has the errors of a weak one. Finer bakes have smaller ones.
+TEST_F(Light, ErrorsAreRelativeAndFallWithTheBake)
+{
+    const auto errors = [&](const char* radiance, const LightOptions& options) {
+        return *stored(fmt::format(R"({{"version":1,"type":"sphere","radius":1,"radiance":{}}})",
+                                   radiance),
+                       options)
+                    .field->errors;
+    };
+    const FieldErrors coarse = errors("[1,2,3]", {8, 17, 64, 0});
+    const FieldErrors strong = errors("[1000,2000,3000]", {8, 17, 64, 0});
+    EXPECT_NEAR(strong.total.rms / coarse.total.rms, 1, 1e-3);
+    EXPECT_LT(errors("[1,2,3]", {8, 33, 64, 0}).angular.rms, 0.7f * coarse.angular.rms);
+    EXPECT_LT(errors("[1,2,3]", {15, 17, 64, 0}).radial.rms, 0.5f * coarse.radial.rms);
+}
+
+TEST_F(Light, NoiseOfRaysIsInTheErrors)
+{
+    folder.write("ball.obj", objText(makeIcosphere(2), 1));
+    const auto noise = [&](std::uint32_t directions) {
+        return stored(R"({"version":1,"type":"mesh","source":"ball.obj","radiance":[1,1,1]})",
+                      {6, 9, directions})
+            .field->errors->directions.rms;
+    };
+    const float few = noise(64), many = noise(1024);
+    EXPECT_GT(few, 0);
+    EXPECT_LT(many, 0.5f * few);
+}
+
 } // namespace penumbra

@@ -64,6 +64,26 @@ TEST(Lods, EachHasHalfTheTrianglesAndKnowsItsError)
     EXPECT_LT(worst, 4 * last.error + 0.05f); // 0.05: samples of the triangles
 }
 
+// A simplifier drops small parts whole, at no cost that it sees: levels that do are not made, or
+// say how far the mesh then lies from them.
+TEST(Lods, PartsThatGoCountAsError)
+{
+    MeshAsset mesh;
+    for (std::uint32_t part = 0; part < 512; ++part) {
+        const vec3 at(part % 8, part / 8 % 8, part / 64);
+        for (const vec2 corner : {vec2{0, 0}, vec2{1, 0}, vec2{0, 1}, vec2{1, 1}}) {
+            mesh.positions.push_back(at + 0.02f * vec3(corner, 0));
+            mesh.normals.emplace_back(0, 0, 1);
+        }
+        for (const std::uint32_t i : {0, 1, 2, 2, 1, 3})
+            mesh.indices.push_back(4 * part + i);
+    }
+    buildLods(mesh, 4);
+    for (const MeshLod& lod : mesh.lods)
+        for (std::size_t i = 0; i < mesh.positions.size(); i += 7)
+            EXPECT_LE(distanceTo(lod, mesh.positions[i]), lod.error + 0.02f);
+}
+
 // Vertices of a level are vertices of the mesh, with all they have.
 TEST(Lods, AttributesFollowVertices)
 {
