@@ -68,9 +68,6 @@ Grid halved(const Grid& grid, std::uint32_t side, bool mean)
     return out;
 }
 
-// After eight the sum of squares changes by less than a thousandth.
-constexpr int kFitSteps = 8;
-
 class Adapter {
 public:
     Adapter(const FieldSamples& field, const AdaptLimit& limit) : m_field(field)
@@ -117,7 +114,7 @@ public:
             for (std::size_t s = 0; s < m_shells; ++s)
                 if (m_adapted[s].side > 0)
                     kept[s] = m_adapted[s].grids[f];
-            fitShells(m_field, f, kept, kFitSteps);
+            fitShells(m_field, f, kept);
             tbb::parallel_for(std::size_t{0}, m_shells, [&](std::size_t s) {
                 std::size_t from = s, to = s;
                 while (kept[from].empty())

@@ -1,6 +1,7 @@
 #include "assetc/compile.h"
 
 #include "assetc/field_errors.h"
+#include "assetc/fit_shells.h"
 #include "assetc/import/import.h"
 #include "assetc/lods.h"
 
@@ -56,7 +57,9 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
     } else {
         // Self-visibility of the vertices and the field of the space around.
         const StageTimer timer(report.times, "bake");
-        baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options.bake, progress);
+        BakeOptions finer = options.bake;
+        finer.side = std::max(options.bake.side, std::min(2 * options.bake.side - 1, 65u));
+        baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, finer, progress);
     }
     mesh.selfVisibility = std::move(baked.selfVisibility);
     if (options.verify) {
@@ -66,6 +69,8 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
     if (options.bake.field) {
         // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
         const StageTimer timer(report.times, "adapt");
+        if (!report.target)
+            baked.field = coarsened(baked.field, options.bake.side);
         if (threshold > 0)
             report.adapt = adaptShells(baked.field, {threshold});
         mesh.field = quantiseField(baked.field);

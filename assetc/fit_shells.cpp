@@ -181,11 +181,40 @@ std::uint32_t sideOf(const std::vector<Sh4>& grid)
     return side;
 }
 
-void fitShells(const FieldSamples& original, std::size_t field, ShellGrids& kept, int steps)
+void fitShells(const FieldSamples& original, std::size_t field, ShellGrids& kept)
 {
+    constexpr int kSteps = 8; // more change the sum of squares by less than a thousandth
     Fit fit(original, field, kept);
-    for (int i = 0; i < steps; ++i)
+    for (int i = 0; i < kSteps; ++i)
         fit.step();
+}
+
+FieldSamples coarsened(const FieldSamples& fine, std::uint32_t side)
+{
+    FieldSamples out;
+    out.head = fine.head;
+    const std::size_t shells = fine.head.shellSides.size();
+    for (std::uint16_t& own : out.head.shellSides)
+        own = static_cast<std::uint16_t>(std::min<std::uint32_t>(own, side));
+    for (std::size_t f = 0; f < std::size_t{fine.head.channels} * fine.head.frames; ++f) {
+        ShellGrids grids(shells);
+        for (std::size_t s = 0; s < shells; ++s) {
+            const std::size_t first = firstNode(fine.head, f * shells + s);
+            const std::uint32_t from = fine.head.shellSides[s], to = out.head.shellSides[s];
+            const std::uint32_t step = (from - 1) / (to - 1);
+            for (std::uint32_t y = 0; y < from; y += step)
+                for (std::uint32_t x = 0; x < from; x += step) {
+                    const std::size_t node = first + std::size_t{y} * from + x;
+                    grids[s].push_back(fine.nodes[node]);
+                    if (!fine.inside.empty())
+                        out.inside.push_back(fine.inside[node]);
+                }
+        }
+        fitShells(fine, f, grids);
+        for (const std::vector<Sh4>& grid : grids)
+            out.nodes.insert(out.nodes.end(), grid.begin(), grid.end());
+    }
+    return out;
 }
 
 } // namespace penumbra

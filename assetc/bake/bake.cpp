@@ -27,6 +27,7 @@ constexpr std::size_t kBatch = 4; // even: see accumulate
 // Of a raster's pixel: so close to the surface lie one node in a hundred and two thirds of the
 // squared error.
 constexpr float kTracedWithin = 0.2f;
+constexpr float kSeesLittle = 0.9f; // of all directions are blocked
 
 struct BakeDirections {
     std::vector<vec3> directions; // antipodal halves
@@ -131,7 +132,8 @@ void accumulate(const std::vector<LineSpace>& lines, const BakeDirections& bake,
 }
 
 // Replaces what the rasters say of points beside the surface: up to a part of a pixel from it they
-// take a point for one on the other side in many directions.
+// take a point for one on the other side in many directions. And of points that see next to
+// nothing: most lie inside, where a line at a rim lets a few directions out.
 void traceBeside(const EmbreeScene& scene, const ShadowField& field, const BakeDirections& bake,
                  float pixel, Receivers& receivers)
 {
@@ -148,7 +150,10 @@ void traceBeside(const EmbreeScene& scene, const ShadowField& field, const BakeD
     tbb::parallel_for(std::size_t{0}, p.size(), [&](std::size_t i) {
         const vec3 point(p.x[i], p.y[i], p.z[i]), at = field.center + field.radius * point;
         const float reach = field.radius * within;
-        if (length(point) > 1 + within || scene.distance(at, reach) >= reach)
+        const float blocked =
+            receivers.blocked[i].c[0] + (sets == 2 ? receivers.blockedByOdd[i].c[0] : 0);
+        const bool seesLittle = blocked > kSeesLittle * kSqrt4Pi && blocked < -kSeesNothing;
+        if (length(point) > 1 + within || (!seesLittle && scene.distance(at, reach) >= reach))
             return;
         receivers.blocked[i] = traceBlocked(scene.handle(), at, directions[0], basis[0]);
         if (sets == 2)

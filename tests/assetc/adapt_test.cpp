@@ -1,5 +1,6 @@
 #include "assetc/adapt.h"
 
+#include "assetc/fit_shells.h"
 #include "shaders/shared/field.h"
 #include "tests/shared/random_sphere.h"
 
@@ -139,6 +140,41 @@ TEST(AdaptShells, FitLeavesNoBias)
     const std::uint32_t side = field.head.shellSides[0];
     for (std::uint32_t i = 0; i < side; ++i)
         EXPECT_FLOAT_EQ(c0(field, 0, 0, i), c0(field, 0, 0, side - 1 - i));
+}
+
+TEST(Coarsened, IsCloserToTheFineFieldThanItsNodes)
+{
+    FieldSamples fine = openField(2, 33);
+    fine.head.shellSides = {17, 33};
+    fine.nodes.resize(17 * 17 + 33 * 33);
+    fine.inside.assign(fine.nodes.size(), false);
+    fine.inside[2 * 17 + 4] = true;
+    for (std::size_t s = 0; s < 2; ++s)
+        for (std::size_t i = 0; i < (s == 0 ? 17 * 17 : 33 * 33); ++i) {
+            const std::size_t side = fine.head.shellSides[s];
+            const vec2 uv = vec2(i % side, i / side) / static_cast<float>(side - 1);
+            c0(fine, s, i / side, i % side) = -1 - std::sin(3 * octahedralDirection(uv).x);
+        }
+    const FieldSamples coarse = coarsened(fine, 17);
+    EXPECT_EQ(coarse.head.shellSides, (Sides{17, 17}));
+    ASSERT_EQ(coarse.inside.size(), 2u * 17 * 17);
+    EXPECT_TRUE(coarse.inside[2 * 17 + 4]);
+    EXPECT_EQ(std::count(coarse.inside.begin(), coarse.inside.end(), true), 1);
+    for (std::size_t i = 0; i < 17 * 17; ++i) // nothing to gain
+        EXPECT_NEAR(coarse.nodes[i].c[0], fine.nodes[i].c[0], 1e-5f);
+
+    std::vector<Sh4> kept, fitted(coarse.nodes.begin() + 17 * 17, coarse.nodes.end());
+    for (std::size_t y = 0; y < 33; y += 2)
+        for (std::size_t x = 0; x < 33; x += 2)
+            kept.push_back(fine.nodes[17 * 17 + y * 33 + x]);
+    const auto squares = [&](const std::vector<Sh4>& grid) {
+        const std::vector<Sh4> read = refineNodes(grid, 17, 33);
+        double sum = 0;
+        for (std::size_t i = 0; i < read.size(); ++i)
+            sum += std::pow(read[i].c[0] - fine.nodes[17 * 17 + i].c[0], 2);
+        return sum;
+    };
+    EXPECT_LT(squares(fitted), 0.6 * squares(kept));
 }
 
 TEST(AdaptShells, ChannelsKeepOneSide)
