@@ -70,20 +70,16 @@ struct BlockedDirections {
 // Adding nothing for a point that is free costs less than asking whether it is.
 PENUMBRA_CLONES void addBlocked(const BlockedDirections& blocked, std::size_t points, Sh4* sums)
 {
-    using Half = float __attribute__((vector_size(32))); // half of the coefficients
+    using Lanes = float __attribute__((vector_size(64))); // all coefficients
     for (std::size_t p = 0; p < points; ++p) {
-        Half low, high;
-        std::memcpy(&low, sums[p].c, sizeof(Half));
-        std::memcpy(&high, sums[p].c + 8, sizeof(Half));
+        Lanes sum;
+        std::memcpy(&sum, sums[p].c, sizeof(Lanes));
         for (std::size_t b = 0; b < blocked.count; ++b) {
-            Half basisLow, basisHigh;
-            std::memcpy(&basisLow, blocked.basis[b].c, sizeof(Half));
-            std::memcpy(&basisHigh, blocked.basis[b].c + 8, sizeof(Half));
-            low += blocked.parts[b][p] * basisLow;
-            high += blocked.parts[b][p] * basisHigh;
+            Lanes basis;
+            std::memcpy(&basis, blocked.basis[b].c, sizeof(Lanes));
+            sum += blocked.parts[b][p] * basis;
         }
-        std::memcpy(sums[p].c, &low, sizeof(Half));
-        std::memcpy(sums[p].c + 8, &high, sizeof(Half));
+        std::memcpy(sums[p].c, &sum, sizeof(Lanes));
     }
 }
 
@@ -142,18 +138,20 @@ void traceBeside(const EmbreeScene& scene, const ShadowField& field, const BakeD
     const std::size_t sets = receivers.blockedByOdd.empty() ? 1 : 2;
     std::vector<vec3> directions[2];
     std::vector<Sh4> basis[2];
-    for (std::size_t i = 0; i < bake.pairs(); ++i)
-        for (const std::size_t d : {i, i + bake.pairs()}) {
-            directions[i % sets].push_back(bake.directions[d]);
-            basis[i % sets].push_back(bake.basis[d]);
-        }
+    for (std::size_t d = 0; d < bake.directions.size(); ++d) {
+        const std::size_t set = d % bake.pairs() % sets;
+        directions[set].push_back(bake.directions[d]);
+        basis[set].push_back(bake.basis[d]);
+    }
     tbb::parallel_for(std::size_t{0}, p.size(), [&](std::size_t i) {
         const vec3 point(p.x[i], p.y[i], p.z[i]), at = field.center + field.radius * point;
         const float reach = field.radius * within;
         const float blocked =
             receivers.blocked[i].c[0] + (sets == 2 ? receivers.blockedByOdd[i].c[0] : 0);
         const bool seesLittle = blocked > kSeesLittle * kSqrt4Pi && blocked < -kSeesNothing;
-        if (length(point) > 1 + within || (!seesLittle && scene.distance(at, reach) >= reach))
+        // Beside a surface about half of the directions are blocked, at needle tips fewer.
+        const bool mayTouch = length(point) < 1 + within && blocked > 0.1f * kSqrt4Pi;
+        if (!mayTouch || (!seesLittle && scene.distance(at, reach) >= reach))
             return;
         receivers.blocked[i] = traceBlocked(scene.handle(), at, directions[0], basis[0]);
         if (sets == 2)

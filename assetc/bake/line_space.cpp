@@ -93,32 +93,36 @@ PENUMBRA_INLINE void setUpTriangles(const Projected& p, const std::uint32_t* con
     }
 }
 
-// Widens near/far of every pixel whose centre triangle i covers, in `columns` columns from `x` on,
-// at most 8.
-PENUMBRA_INLINE void drawColumns(const SetUp& t, std::size_t i, int x, int rows, int pitch,
-                                 float* near, float* far)
+// Widens near/far of every pixel whose centre triangle i covers, in at most 8 columns from `x` on
+// and `rows` rows from `y` on: few, since what is added up from row to row rounds each time.
+PENUMBRA_INLINE void drawPart(const SetUp& t, std::size_t i, int x, int y, int rows, int pitch,
+                              float* near, float* far)
 {
     const Lanes lane = {0, 1, 2, 3, 4, 5, 6, 7};
     const Lanes step = lane + static_cast<float>(x);
+    const auto down = static_cast<float>(y);
     const auto inside = step < static_cast<float>(t.columns[i]);
-    Lanes a = t.corner[0][i] + step * t.dx[0][i], b = t.corner[1][i] + step * t.dx[1][i],
-          c = t.corner[2][i] + step * t.dx[2][i], depth = t.depth[i] + step * t.depthDx[i];
-    near += t.pixel[i] + x;
-    far += t.pixel[i] + x;
-    for (int y = 0; y < rows; ++y, near += pitch, far += pitch) {
+    Lanes a = t.corner[0][i] + down * t.dy[0][i] + step * t.dx[0][i];
+    Lanes b = t.corner[1][i] + down * t.dy[1][i] + step * t.dx[1][i];
+    Lanes c = t.corner[2][i] + down * t.dy[2][i] + step * t.dx[2][i];
+    Lanes depth = t.depth[i] + down * t.depthDy[i] + step * t.depthDx[i];
+    near += t.pixel[i] + x + y * pitch;
+    far += t.pixel[i] + x + y * pitch;
+    for (int row = 0; row < rows; ++row, near += pitch, far += pitch) {
         // Coverage is inclusive on all edges: a line on an edge hits both triangles, but for the
         // rounding of these few operations.
-        const auto down = static_cast<float>(y);
-        const auto covered = (a + down * t.dy[0][i] >= 0.0f) & (b + down * t.dy[1][i] >= 0.0f) &
-                             (c + down * t.dy[2][i] >= 0.0f) & inside;
-        const Lanes here = depth + down * t.depthDy[i];
+        const auto covered = (a >= 0.0f) & (b >= 0.0f) & (c >= 0.0f) & inside;
         Lanes nearest, farthest;
         std::memcpy(&nearest, near, sizeof(Lanes));
         std::memcpy(&farthest, far, sizeof(Lanes));
-        nearest = (covered & (here < nearest)) ? here : nearest;
-        farthest = (covered & (here > farthest)) ? here : farthest;
+        nearest = (covered & (depth < nearest)) ? depth : nearest;
+        farthest = (covered & (depth > farthest)) ? depth : farthest;
         std::memcpy(near, &nearest, sizeof(Lanes));
         std::memcpy(far, &farthest, sizeof(Lanes));
+        a += t.dy[0][i];
+        b += t.dy[1][i];
+        c += t.dy[2][i];
+        depth += t.depthDy[i];
     }
 }
 
@@ -134,7 +138,7 @@ PENUMBRA_INLINE void drawClasses(const SetUp& t, const Classes& classes, int pit
                                  float* far)
 {
     for (std::size_t k = 0; k < classes.count[kRows]; ++k)
-        drawColumns(t, classes.members[kRows][k], 0, kRows, pitch, near, far);
+        drawPart(t, classes.members[kRows][k], 0, 0, kRows, pitch, near, far);
     if constexpr (kRows + 2 < kClasses)
         drawClasses<kRows + 1>(t, classes, pitch, near, far);
 }
@@ -157,8 +161,10 @@ PENUMBRA_CLONES void drawTriangles(const Projected& projected,
         drawClasses<1>(ready, classes, pitch, near, far);
         for (std::size_t k = 0; k < classes.count[kClasses - 1]; ++k) {
             const std::size_t i = classes.members[kClasses - 1][k];
-            for (int x = 0; x < ready.columns[i]; x += kLanes)
-                drawColumns(ready, i, x, ready.rows[i], pitch, near, far);
+            for (int y = 0; y < ready.rows[i]; y += kClasses)
+                for (int x = 0; x < ready.columns[i]; x += kLanes)
+                    drawPart(ready, i, x, y, std::min(kClasses, ready.rows[i] - y), pitch, near,
+                             far);
         }
     }
 }
