@@ -2,6 +2,7 @@
 
 #include "assetc/compile_scene.h"
 #include "assetc/report_mesh.h"
+#include "runtime/peak_memory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -145,6 +146,7 @@ Json compileJson(const std::filesystem::path& source, const CompiledAsset& asset
                             {"worstRadius", report.verify->worstRadius}};
     for (const StageTime& time : report.times)
         result["seconds"][time.stage] = time.seconds;
+    result["peakBytes"] = peakMemory();
     result["warnings"] = report.warnings;
     return result;
 }

@@ -7,11 +7,11 @@
 #include "demo/run_statistics.h"
 #include "demo/simulation.h"
 #include "runtime/file.h"
+#include "runtime/peak_memory.h"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace penumbra {
@@ -52,8 +52,6 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
     for (const SceneInstance& instance : data.instances)
         occluders += instance.occluder && data.meshes[instance.mesh].field != kNoField ? 1 : 0;
     dynamic = scene.physics ? scene.physics->bodyCount() - 1 : 0; // one body is the ground
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
     return {{"scene", scene.name},
             {"device", options.cpuScalar ? "cpu-scalar" : device.properties.deviceName},
             {"driver", device.driver},
@@ -78,7 +76,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
              {{"fields", data.fieldSamples.size() * sizeof(uvec4)},
               {"meshes", data.receivers.size() * sizeof(ReceiverTexels) + data.indices.size() * 4},
               {"gpu", gpuBytes(renderer.scene().buffers())},
-              {"peakRss", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024}}}};
+              {"peakRss", peakMemory()}}}};
 }
 
 void showProgress(std::uint32_t frame, std::uint32_t frames)

@@ -1,8 +1,7 @@
 #include "assetc/build/build_report.h"
 
 #include "assetc/build/build_progress.h"
-
-#include <sys/resource.h>
+#include "runtime/peak_memory.h"
 
 namespace penumbra {
 
@@ -15,13 +14,6 @@ const char* statusName(BuildStatus status)
     return status == BuildStatus::Built       ? "built"
            : status == BuildStatus::Unchanged ? "unchanged"
                                               : "failed";
-}
-
-std::uint64_t peakBytes()
-{
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in KiB
 }
 
 Json assetJson(const ManifestAsset& asset, const AssetOutcome& outcome)
@@ -68,7 +60,7 @@ std::string buildReport(const Manifest& manifest, const std::filesystem::path& f
     report["totals"] = {{"assets", outcome.assets.size()}, {"built", outcome.built},
                         {"unchanged", outcome.unchanged},  {"failed", outcome.failed},
                         {"seconds", outcome.seconds},      {"bytes", bytes},
-                        {"peakBytes", peakBytes()}};
+                        {"peakBytes", peakMemory()}};
     return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
