@@ -56,7 +56,7 @@ private:
     struct Run {
         Archetype* from;
         Archetype* to;
-        std::vector<uint32_t> slots;
+        std::vector<Entity> entities;
     };
 
     void collect();
@@ -69,7 +69,7 @@ private:
     [[nodiscard]] Entity real(Entity entity, uint32_t buffer) const;
     [[nodiscard]] std::byte* valueOf(const Op& op) const
     {
-        return m_buffers[op.buffer]->m_values.data() + op.value;
+        return m_buffers[op.buffer]->valueAt(op.component, op.value);
     }
     [[nodiscard]] Run& runOf(Archetype* from, Archetype* to);
 
@@ -79,10 +79,8 @@ private:
     std::vector<Slot> m_slots;
     std::vector<std::vector<Entity>> m_created; // [buffer][deferred index]
     std::vector<Run> m_runs;
-    uint32_t m_lastRun = 0;         // most entities go the way of the one before
-    Archetype* m_lastTo = nullptr;  // likewise
-    std::vector<Entity> m_entities; // scratch of moveRun()
-    std::vector<uint32_t> m_rows;   // scratch of moveRun()
+    uint32_t m_lastRun = 0;        // most entities go the way of the one before
+    Archetype* m_lastTo = nullptr; // likewise
     PlaybackStatistics m_statistics;
 };
 
@@ -106,6 +104,7 @@ void CommandPlayback::collect()
     for (uint32_t b = 0; b < m_buffers.size(); ++b) {
         CommandBuffer& buffer = *m_buffers[b];
         m_created[b].reserve(buffer.m_created);
+        m_world.m_entities.reserve(buffer.m_created);
         m_slots.reserve(m_slots.size() + buffer.m_created);
         for (Op& op : buffer.m_ops) {
             op.buffer = static_cast<uint16_t>(b);
@@ -117,8 +116,10 @@ void CommandPlayback::collect()
                 ++m_statistics.dropped;
                 continue;
             }
-            if (m_world.m_entities.indexCount() > slotOf.size())
-                slotOf.resize(m_world.m_entities.indexCount() * size_t{2}, kNone);
+            if (const size_t count = m_world.m_entities.indexCount(); count > slotOf.size()) {
+                reserveSparingly(slotOf, count);
+                slotOf.resize(slotOf.capacity(), kNone);
+            }
             uint32_t& index = slotOf[entity.index];
             if (index == kNone) {
                 index = static_cast<uint32_t>(m_slots.size());
@@ -197,11 +198,12 @@ void CommandPlayback::merge(uint32_t slotIndex)
         m_lastTo = &m_world.archetypeOf(mask);
     slot.to = m_lastTo;
     if (slot.to != slot.from)
-        runOf(slot.from, slot.to).slots.push_back(slotIndex);
+        runOf(slot.from, slot.to).entities.push_back(slot.entity);
 }
 
 void CommandPlayback::move()
 {
+    m_world.m_hierarchy.makeRoom(m_world.m_entities.indexCount());
     const auto key = [](const Run& run) {
         return std::pair(run.to->index(), run.from != nullptr ? run.from->index() : kNone);
     };
@@ -213,40 +215,31 @@ void CommandPlayback::move()
 
 void CommandPlayback::moveRun(const Run& run)
 {
-    EntityTable& table = m_world.m_entities;
-    m_entities.clear();
-    m_rows.clear();
-    for (const uint32_t i : run.slots) {
-        m_entities.push_back(m_slots[i].entity);
-        m_rows.push_back(table[m_slots[i].entity].row);
-    }
-    uint32_t row = run.to->append(m_entities, m_world.m_stamp);
-    if (run.from != nullptr)
-        run.to->copyRows(row, *run.from, m_rows);
-    for (const Entity entity : m_entities) {
-        table[entity].archetype = run.to->index();
-        table[entity].row = row++;
-    }
-    m_statistics.moves += static_cast<uint32_t>(run.slots.size());
-    if (run.from == nullptr)
+    m_statistics.moves += static_cast<uint32_t>(run.entities.size());
+    if (run.from != nullptr) {
+        static_cast<void>(m_world.moveRun(run.entities, *run.from, *run.to));
         return;
-    // From the last row down: the row that fills a gap is then never one that leaves as well.
-    std::sort(m_rows.begin(), m_rows.end(), std::greater<>());
-    for (const uint32_t left : m_rows)
-        m_world.takeRowOut(*run.from, left);
+    }
+    m_world.makeRoom(*run.to, static_cast<uint32_t>(run.entities.size()));
+    m_world.setPlaces(*run.to, run.to->append(run.entities, m_world.m_stamp));
 }
 
 void CommandPlayback::write(const Slot& slot)
 {
-    const uint32_t row = m_world.m_entities[slot.entity].row;
+    const uint32_t row = m_world.m_entities.place(slot.entity).row;
+    ComponentMask there = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
     for (const Op* op = slot.first; op != nullptr; op = op->next) {
         const bool writes = op->kind == Kind::add || op->kind == Kind::set;
         const int32_t column = slot.to->columnOf(op->component);
         if (!writes || column < 0)
             continue;
         if (slot.from == slot.to) // else the new row is marked already
-            slot.to->markRow(column, row, m_world.m_stamp);
-        slot.to->write(op->component, row, valueOf(*op));
+            slot.to->markRow(static_cast<uint32_t>(column), row, m_world.m_stamp);
+        if (componentInfo(op->component).life == nullptr)
+            slot.to->write(op->component, row, valueOf(*op));
+        else
+            slot.to->moveIn(op->component, row, valueOf(*op), there.test(op->component));
+        there.set(op->component);
     }
 }
 
@@ -272,7 +265,7 @@ void CommandPlayback::attach(Slot& slot)
         m_world.remove<Parent>(slot.entity);
         return;
     }
-    const World::Place at = m_world.place(slot.entity);
+    const Place at = m_world.place(slot.entity);
     at.archetype->write(m_parent, at.row, &old);
 }
 

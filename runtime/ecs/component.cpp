@@ -52,7 +52,8 @@ ComponentId registerComponent(const ComponentInfo& info)
                         known.name, info.name);
         PENUMBRA_ASSERT(known.bytes == info.bytes && known.laneCount == info.laneCount &&
                             known.laneAlignment == info.laneAlignment &&
-                            known.rowChanges == info.rowChanges,
+                            known.rowChanges == info.rowChanges &&
+                            (known.life == nullptr) == (info.life == nullptr),
                         "component '{}' has two layouts ({} and {} bytes): two types, one name?",
                         info.name, known.bytes, info.bytes);
         return found->second;

@@ -42,6 +42,17 @@ public:
     // of one level in parallel.
     [[nodiscard]] std::span<const uint32_t> levels() const { return m_levels; }
 
+    // Slots whose entities' rows follow each other in one block of one archetype: what a walk in
+    // order can treat as arrays. Current as order() is.
+    struct Run {
+        Archetype* archetype;
+        uint32_t row;  // of the first
+        uint32_t slot; // of the first
+        uint32_t count;
+    };
+    // Asserts that no row has moved since.
+    [[nodiscard]] std::span<const Run> runs() const;
+
     [[nodiscard]] bool contains(Entity entity) const { return find(entity) != nullptr; }
     [[nodiscard]] Entity parentOf(Entity child) const; // null: none
     [[nodiscard]] std::vector<Entity> childrenOf(Entity parent) const;
@@ -58,7 +69,10 @@ private:
     void detach(Entity child);
     // Appends `root` and everything below it, parents first.
     void collect(Entity root, std::vector<Entity>& out) const;
-    void refresh();
+    void refresh(const EntityTable& table);
+    void findRuns(const EntityTable& table);
+    // For indices below `count`: attach() does not allocate then.
+    void makeRoom(size_t count);
 
     // Links by node; node of an entity = index + 1. Node 0 is the parent of all roots with
     // children.
@@ -67,7 +81,7 @@ private:
         uint32_t parent = kNone; // kNone: neither parent nor children
         uint32_t firstChild = 0, lastChild = 0, next = 0, previous = 0; // 0: none
     };
-    uint32_t nodeOf(Entity entity); // makes room
+    uint32_t nodeOf(Entity entity);
     [[nodiscard]] const Node* find(Entity entity) const
     {
         const size_t node = size_t{entity.index} + 1;
@@ -86,6 +100,9 @@ private:
     std::vector<Slot> m_order;
     std::vector<uint32_t> m_orderNodes; // [order().size()], scratch of refresh()
     std::vector<uint32_t> m_levels{0};
+    std::vector<Run> m_runs;
+    const EntityTable* m_table = nullptr; // that refresh() saw
+    uint64_t m_runsAt = 0;                // its moves() then
     bool m_stale = false;
 };
 

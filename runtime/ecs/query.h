@@ -13,11 +13,11 @@
 #include "runtime/ecs/query_cache.h"
 #include "runtime/ecs/query_terms.h"
 
-#include <atomic>
 #include <utility>
 
 namespace penumbra::ecs {
 
+class Hierarchy;
 struct Parent; // written by World alone, so that the links of Hierarchy follow
 
 // Rows that lie side by side in memory: one segment of one archetype.
@@ -52,12 +52,13 @@ public:
     static constexpr bool kReadOnly = !(kWrites<Terms> || ...);
 
     // For World and SystemContext. `iterating` counts the walks in progress.
-    Query(const QueryCache& cache, Stamp stamp, uint64_t since, std::atomic<uint32_t>& iterating)
+    Query(const QueryCache& cache, Stamp stamp, uint64_t since, uint32_t& iterating)
         : m_cache(&cache), m_stamp(stamp), m_since(since), m_iterating(&iterating)
     {}
 
     // The terms, for the cache.
     static uint32_t slot();
+    static uint32_t findSlot();
 
     // Changed<> passes what was written after this version (World::version() at the last look).
     [[nodiscard]] Query since(uint64_t version) const
@@ -86,6 +87,14 @@ public:
     // 16 KiB take about as long to walk as handing a task to another thread.
     static constexpr uint32_t kInlineSegments = 4;
 
+    // f(first, arguments…, parent) for each row that is part of the hierarchy, parents before their
+    // children: `parent` is the parent's value of the first term, const, null if there is none.
+    //   world.query<WorldFromNode, const Local>().eachDown(world.hierarchy(), f)
+    // The first term is not split into lanes. Rows that lie in memory as in the hierarchy's order
+    // are walked as arrays. Not with Changed<>.
+    template <class F>
+    void eachDown(const Hierarchy& hierarchy, F&& f) const;
+
     // Rows in matching archetypes; Changed<> is not looked at.
     [[nodiscard]] uint32_t count() const { return m_cache->rowCount(); }
     [[nodiscard]] uint32_t segmentCount() const;
@@ -94,13 +103,15 @@ private:
     using Match = QueryCache::Match;
     struct Task {
         const Match* match;
-        uint32_t segment;
+        uint32_t segment; // the first
+        uint32_t count;
     };
 
     template <class Visit>
     void forSegments(Visit&& visit) const;
     template <class Visit>
     void forSegmentsParallel(Visit&& visit) const;
+    [[nodiscard]] bool archetypePasses(const Match& match) const;
     [[nodiscard]] bool segmentPasses(const Match& match, uint32_t segment) const;
     [[nodiscard]] uint64_t changedRows(const Match& match, uint32_t segment, uint32_t word) const;
     // `count` rows from `row` of a segment are about to be written.
@@ -132,7 +143,7 @@ private:
     const QueryCache* m_cache;
     Stamp m_stamp;
     uint64_t m_since;
-    std::atomic<uint32_t>* m_iterating;
+    uint32_t* m_iterating;
 };
 
 } // namespace penumbra::ecs

@@ -9,28 +9,38 @@ namespace penumbra::ecs {
 class IterationGuard {
 public:
 #ifdef NDEBUG
-    explicit IterationGuard(std::atomic<uint32_t>&) {}
+    explicit IterationGuard(uint32_t&) {}
 #else
-    explicit IterationGuard(std::atomic<uint32_t>& walks) : m_walks(walks)
+    explicit IterationGuard(uint32_t& walks) : m_walks(walks)
     {
-        ++m_walks;
+        __atomic_fetch_add(&m_walks, 1, __ATOMIC_RELAXED);
     }
     ~IterationGuard()
     {
-        --m_walks;
+        __atomic_fetch_sub(&m_walks, 1, __ATOMIC_RELAXED);
     }
     IterationGuard(const IterationGuard&) = delete;
     IterationGuard& operator=(const IterationGuard&) = delete;
 
 private:
-    std::atomic<uint32_t>& m_walks;
+    uint32_t& m_walks;
 #endif
 };
 
 template <class... Terms>
+inline constinit uint32_t kKnownQuery = 0; // Query::slot() once found, plus one: as kKnownId
+
+template <class... Terms>
 uint32_t Query<Terms...>::slot()
 {
-    static const uint32_t slot = [] {
+    const uint32_t known = __atomic_load_n(&kKnownQuery<Terms...>, __ATOMIC_RELAXED);
+    return known != 0 ? known - 1 : findSlot();
+}
+
+template <class... Terms>
+[[gnu::noinline, gnu::cold]] uint32_t Query<Terms...>::findSlot()
+{
+    const uint32_t found = [] {
         QueryTerms terms;
         [[maybe_unused]] const auto add = [&]<class Term>() {
             using Traits = TermTraits<Term>;
@@ -47,7 +57,8 @@ uint32_t Query<Terms...>::slot()
         (add.template operator()<Terms>(), ...);
         return registerQuery(terms);
     }();
-    return slot;
+    __atomic_store_n(&kKnownQuery<Terms...>, found + 1, __ATOMIC_RELAXED);
+    return found;
 }
 
 template <class... Terms>
@@ -74,6 +85,16 @@ bool Query<Terms...>::segmentPasses(const Match& match, uint32_t segment) const
     bool passes = kChangedCount == 0;
     for (size_t i = 0; i < kChangedCount; ++i)
         passes |= match.archetype->version(match.columns[kDataCount + i], segment) > m_since;
+    return passes;
+}
+
+// False if no segment passes: most worlds hold still for the most part.
+template <class... Terms>
+bool Query<Terms...>::archetypePasses(const Match& match) const
+{
+    bool passes = kChangedCount == 0;
+    for (size_t i = 0; i < kChangedCount; ++i)
+        passes |= match.archetype->version(match.columns[kDataCount + i]) > m_since;
     return passes;
 }
 
@@ -174,15 +195,31 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) co
     const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
     const auto columns = columnPointers(match, first, DataIndices());
     const Entity* entities = archetype.entities().data() + first;
+    // First which rows, without a branch per row: where few changed, here and there, wrong guesses
+    // would take longer than the work.
+    std::array<uint16_t, kPageRows + 3> changed;
+    uint32_t count = 0;
     for (uint32_t word = 0; word * 64 < rows; ++word) {
         const uint32_t left = rows - word * 64;
         uint64_t bits = changedRows(match, segment, word);
         bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
-        for (; bits != 0; bits &= bits - 1) {
-            const uint32_t row = word * 64 + static_cast<uint32_t>(std::countr_zero(bits));
-            mark(match, segment, row, 1);
-            callRow(f, entities, row, columns, DataIndices());
+        if (bits == ~uint64_t{0}) {
+            for (uint32_t i = 0; i < 64; ++i)
+                changed[count++] = static_cast<uint16_t>(word * 64 + i);
+            continue;
         }
+        do
+            for (uint32_t i = 0; i < 3; ++i) { // past the last bit, writes what counts for nothing
+                changed[count] = static_cast<uint16_t>(
+                    word * 64 + static_cast<uint32_t>(std::countr_zero(bits)));
+                count += bits != 0;
+                bits &= bits - 1;
+            }
+        while (bits != 0);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        mark(match, segment, changed[i], 1);
+        callRow(f, entities, changed[i], columns, DataIndices());
     }
 }
 
@@ -226,7 +263,8 @@ void Query<Terms...>::forSegments(Visit&& visit) const
     const IterationGuard guard(*m_iterating);
     uint32_t ordinal = 0;
     for (const Match& match : m_cache->matches())
-        for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+        for (uint32_t s = archetypePasses(match) ? 0 : kNone; s < match.archetype->segmentCount();
+             ++s)
             if (segmentPasses(match, s))
                 visit(match, s, ordinal++);
 }
@@ -236,7 +274,7 @@ template <class Visit>
 void Query<Terms...>::forSegmentsParallel(Visit&& visit) const
 {
     std::vector<Task> tasks;
-    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s}); });
+    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s, 1}); });
     const IterationGuard guard(*m_iterating);
     const auto count = static_cast<uint32_t>(tasks.size());
     const auto run = [&](uint32_t i) { visit(*tasks[i].match, tasks[i].segment, i); };
@@ -275,11 +313,19 @@ void Query<Terms...>::each(F&& f) const
     // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
     const IterationGuard guard(*m_iterating);
     for (const Match& match : m_cache->matches()) {
-        const Archetype& archetype = *match.archetype;
+        Archetype& archetype = *match.archetype;
         const uint32_t rows = archetype.count();
-        for (uint32_t s = 0; !kReadOnly && s < archetype.segmentCount(); ++s)
-            mark(match, s, 0,
-                 std::min(archetype.segmentRows(), rows - s * archetype.segmentRows()));
+        if (rows == 0)
+            continue;
+        [&]<size_t... k>(std::index_sequence<k...>)
+        {
+            [[maybe_unused]] const auto markTerm = [&](bool writes, int16_t column) {
+                if (writes && column >= 0)
+                    archetype.markAll(static_cast<uint32_t>(column), m_stamp);
+            };
+            (markTerm(!std::is_const_v<typename Argument<k>::Access>, match.columns[k]), ...);
+        }
+        (DataIndices());
         for (uint32_t row = 0; row < rows; row += archetype.blockRows())
             callRun(f, match, row, std::min(archetype.blockRows(), rows - row));
     }
@@ -289,17 +335,36 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEach(F&& f) const
 {
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
-        if constexpr (kChangedCount > 0) {
+    if constexpr (kChangedCount > 0) {
+        forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
             callChanged(f, match, segment);
-        } else {
-            const uint32_t rows = match.archetype->segmentRows();
-            const uint32_t first = segment * rows;
-            const uint32_t count = std::min(rows, match.archetype->count() - first);
-            mark(match, segment, 0, count);
-            callRun(f, match, first, count);
-        }
-    });
+        });
+    } else {
+        // Several segments of a block in one task, where there are plenty: longer loops cost less.
+        const IterationGuard guard(*m_iterating);
+        const uint32_t most = std::min(segmentCount() / 64 + 1, kBlockSegments);
+        std::vector<Task> tasks;
+        for (const Match& match : m_cache->matches())
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); s += tasks.back().count)
+                tasks.push_back({&match, s,
+                                 std::min(std::min(most, kBlockSegments - s % kBlockSegments),
+                                          match.archetype->segmentCount() - s)});
+        const auto run = [&](uint32_t i) {
+            const Task& task = tasks[i];
+            const Archetype& archetype = *task.match->archetype;
+            const uint32_t rows = archetype.segmentRows();
+            const uint32_t first = task.segment * rows;
+            const uint32_t count = std::min(task.count * rows, archetype.count() - first);
+            for (uint32_t row = 0; !kReadOnly && row < count; row += rows)
+                mark(*task.match, task.segment + row / rows, 0, std::min(rows, count - row));
+            callRun(f, *task.match, first, count);
+        };
+        const auto count = static_cast<uint32_t>(tasks.size());
+        if (count >= kInlineSegments)
+            return parallelFor(count, run);
+        for (uint32_t i = 0; i < count; ++i)
+            run(i);
+    }
 }
 
 } // namespace penumbra::ecs

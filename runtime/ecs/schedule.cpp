@@ -3,6 +3,7 @@
 #include "runtime/assert.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace penumbra::ecs {
 

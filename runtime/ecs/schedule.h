@@ -19,6 +19,8 @@
 #include "runtime/ecs/system_context.h"
 
 #include <functional>
+#include <memory>
+#include <string>
 
 namespace penumbra::ecs {
 

@@ -3,6 +3,8 @@
 
 #include "runtime/ecs/schedule.h"
 
+#include <atomic>
+
 namespace penumbra::ecs {
 
 struct Schedule::Node {

@@ -2,6 +2,7 @@
 // declared (asserted in debug builds), look at structure, and record commands for later.
 #pragma once
 
+#include "runtime/assert.h"
 #include "runtime/ecs/command_buffer.h"
 #include "runtime/ecs/world.h"
 

@@ -18,9 +18,6 @@
 #include "runtime/ecs/hierarchy.h"
 #include "runtime/ecs/query.h"
 
-#include <mutex>
-#include <unordered_map>
-
 namespace penumbra::ecs {
 
 struct WorldStatistics {
@@ -33,12 +30,16 @@ struct WorldStatistics {
 class World {
 public:
     World();
+    ~World();
     World(const World&) = delete;
     World& operator=(const World&) = delete;
 
+    // Where memory runs out or copying a value throws, the exception passes through and the world
+    // is as it was (…Many: addMany has done the entities before; the rest as one).
+
     // --- Entities. All components arrive in one move.
     template <class... Ts>
-    Entity create(const Ts&... values);
+    Entity create(Ts&&... values);
     // out.size() entities. Each argument is one value for all of them, or a
     // std::span<const T> of out.size() values.
     template <class... Arguments>
@@ -52,11 +53,18 @@ public:
 
     // --- Components. add overwrites what is there; set needs it there; remove ignores absence.
     template <class... Ts>
-    void add(Entity entity, const Ts&... values);
+    void add(Entity entity, Ts&&... values);
     template <class T>
     void set(Entity entity, const T& value);
     template <class... Ts>
     void remove(Entity entity);
+    // The same for all entities of a list, faster: those that lie in one archetype one after the
+    // other in the list move together. All alive and distinct; arguments as of createMany(). Not
+    // for Parent.
+    template <class... Arguments>
+    void addMany(std::span<const Entity> entities, const Arguments&... arguments);
+    template <class... Ts>
+    void removeMany(std::span<const Entity> entities);
     template <class T>
     [[nodiscard]] bool has(Entity entity) const;
     // get<T> marks, get<const T> does not. A lane-split component has no address: value() and
@@ -111,35 +119,62 @@ private:
     friend class Schedule;
     friend class CommandPlayback;
 
-    struct Place {
-        Archetype* archetype;
-        uint32_t row;
-    };
     [[nodiscard]] Place place(Entity entity) const
     {
         if (!m_entities.alive(entity)) [[unlikely]]
             failStale(entity);
-        const EntityRecord& record = m_entities[entity];
-        return {m_archetypes[record.archetype].get(), record.row};
+        return m_entities.place(entity);
     }
     [[noreturn]] void failStale(Entity entity) const;
     [[noreturn]] void failMissing(Entity entity, ComponentId id) const;
+    [[noreturn]] void failStructural() const;
+    [[noreturn]] static void failInSystem();
+    [[noreturn]] static void failNoSingleton(ComponentId id);
     void assertStructural() const;
     void assertOutsideSystems() const;
 
     [[nodiscard]] Archetype& archetypeOf(const ComponentMask& mask);
-    [[nodiscard]] Archetype& archetypeOf(const ComponentSet& set);
+    [[nodiscard]] Archetype& archetypeOf(const ComponentSet& set)
+    {
+        if (set.slot < m_bySet.size() && m_bySet[set.slot] != nullptr) [[likely]]
+            return *m_bySet[set.slot];
+        return findArchetype(set);
+    }
+    Archetype& findArchetype(const ComponentSet& set);
     [[nodiscard]] const QueryCache& cacheOf(uint32_t querySlot) const;
-    Place createIn(const ComponentSet& set);
-    Archetype& createManyIn(const ComponentSet& set, std::span<Entity> out);
+    // Room for `more` rows. After it, nothing throws that puts rows in.
+    void makeRoom(Archetype& archetype, uint32_t more)
+    {
+        if (!archetype.hasRoom(more)) [[unlikely]]
+            growRoom(archetype, more);
+    }
+    void growRoom(Archetype& archetype, uint32_t more);
+    void setPlaces(Archetype& archetype, uint32_t row);
+    struct NewRow {
+        Archetype* archetype;
+        uint32_t row;
+        Entity entity;
+    };
+    NewRow createIn(const ComponentSet& set);
+    Archetype& roomFor(const ComponentSet& set, size_t count);
+    void appendNew(Archetype& archetype, std::span<Entity> out);
+    [[nodiscard]] Archetype& withSet(Archetype& from, const ComponentSet& set);
+    [[nodiscard]] Archetype& withoutSet(Archetype& from, const ComponentSet& set);
     Place addSet(Entity entity, const ComponentSet& set);
     void removeSet(Entity entity, const ComponentSet& set);
-    Place move(Entity entity, Archetype& to);
+    Place move(Entity entity, const Place& from, Archetype& to);
+    // Rows of one archetype, distinct, move to another. Returns the first new row.
+    uint32_t moveRun(std::span<const Entity> entities, Archetype& from, Archetype& to);
+    // The first entities of the list that lie in one archetype.
+    [[nodiscard]] size_t runLength(std::span<const Entity> entities) const;
     void takeRowOut(Archetype& archetype, uint32_t row);
+    void closeGap(Archetype& archetype, uint32_t row);
     void destroyLeaf(Entity entity);
+    void checkParent(Entity child, Entity parent);
     void attachOrFail(Entity child, Entity parent);
-    template <class T>
-    static void store(const Place& place, const T& value);
+    template <class... Arguments>
+    static void fillAll(Archetype& archetype, uint32_t row, uint32_t count,
+                        const Arguments&... arguments);
     template <class T>
     [[nodiscard]] T* find(Entity entity, Stamp stamp) const;
     template <class T>
@@ -147,20 +182,21 @@ private:
     template <class T>
     [[nodiscard]] Entity singletonEntity() const;
 
+    struct Index; // archetypes by their components, queries, a lock: what needs heavy headers
+
     EntityTable m_entities;
-    std::vector<std::unique_ptr<Archetype>> m_archetypes; // in the order they were made; 0 is empty
-    std::unordered_map<ComponentMask, Archetype*, ComponentMask::Hash> m_byMask;
-    std::vector<Archetype*> m_bySet; // [ComponentSet::slot]
+    std::vector<Archetype*> m_archetypes; // owned, in the order they were made; 0 is empty
+    Index* m_index;                       // owned
+    std::vector<Archetype*> m_bySet;      // [ComponentSet::slot]
     Hierarchy m_hierarchy;
     std::vector<Entity> m_singletons;   // [ComponentId]
     std::vector<Entity> m_doomed;       // scratch of destroy()
     std::vector<uint32_t> m_mergeSlots; // scratch of command playback
+    std::vector<uint32_t> m_leaving;    // scratch of moveRun()
     Stamp m_stamp{1, 0};
     bool m_inSystems = false;
 
-    mutable std::mutex m_queryMutex;                            // systems make queries at once
-    mutable std::vector<std::unique_ptr<QueryCache>> m_queries; // [query slot]
-    mutable std::atomic<uint32_t> m_iterating = 0;
+    mutable uint32_t m_iterating = 0; // debug builds; several threads count
 };
 
 } // namespace penumbra::ecs

@@ -1,5 +1,7 @@
-// What World tells about itself: dump() and statistics().
+// What World tells about an entity: dump().
 #include "runtime/ecs/world.h"
+
+#include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
@@ -44,6 +46,10 @@ std::string World::dump(Entity entity) const
             text += fmt::format("  {} (tag)\n", info.name);
             return;
         }
+        if (info.life != nullptr) {
+            text += fmt::format("  {} ({} bytes, not plain data)\n", info.name, info.bytes);
+            return;
+        }
         std::vector<std::byte> value(info.bytes);
         at.archetype->read(id, at.row, value.data());
         const uint32_t segment = at.row >> at.archetype->segmentShift();
@@ -55,23 +61,6 @@ std::string World::dump(Entity entity) const
     for (const Entity child : m_hierarchy.childrenOf(entity))
         text += fmt::format("  child {}\n", toString(child));
     return text;
-}
-
-WorldStatistics World::statistics() const
-{
-    WorldStatistics all;
-    all.entities = count();
-    all.archetypes = static_cast<uint32_t>(m_archetypes.size());
-    for (const auto& archetype : m_archetypes) {
-        all.segments += archetype->segmentCount();
-        all.valueBytes += archetype->valueBytes();
-        all.blockBytes += archetype->blockBytes();
-        all.bookBytes += archetype->bookBytes();
-    }
-    all.bookBytes += m_entities.bytes() + m_hierarchy.bytes();
-    for (const auto& query : m_queries)
-        all.bookBytes += query ? query->bytes() : 0;
-    return all;
 }
 
 } // namespace penumbra::ecs

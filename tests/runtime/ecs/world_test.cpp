@@ -87,6 +87,24 @@ TEST(World, AddAndRemoveKeepTheOtherValues)
     EXPECT_EXIT(world.set(b, Velocity{}), testing::ExitedWithCode(3), "has no test.Velocity");
 }
 
+// Values may come from the world itself, whose blocks grow and whose rows move meanwhile.
+TEST(World, CopiesItsOwnValues)
+{
+    World world;
+    const Entity first = world.create(Position{1, 2, 3}, Health{4});
+    std::vector<Entity> all{first};
+    for (uint32_t i = 0; i < 10000; ++i)
+        all.push_back(
+            world.create(world.get<const Position>(first), world.get<const Health>(first)));
+    for (const Entity entity : all)
+        ASSERT_EQ(world.get<const Position>(entity), (Position{1, 2, 3}));
+    const Entity last = all.back();
+    world.set(last, Health{9});
+    const Entity other = world.create(Velocity{});
+    world.add(other, world.get<const Health>(last));
+    EXPECT_EQ(world.get<const Health>(other).points, 9u);
+}
+
 TEST(World, ReusesIndicesWithNewGenerations)
 {
     World world;
