@@ -177,6 +177,7 @@ Entity Archetype::removeRow(uint32_t row, Stamp stamp)
             copyValue(at(column, row), at(column, last), m_columns[column].bytes);
         markStructural(row, stamp);
     }
+    m_disabled.removeRow(row, last, m_segmentShift);
     m_entities.pop_back();
     return moved;
 }
@@ -254,6 +255,7 @@ size_t Archetype::bookBytes() const
     size_t bytes = sizeof(*this) + m_entities.capacity() * sizeof(Entity) +
                    m_versions.capacity() * sizeof(uint64_t) +
                    m_columns.capacity() * sizeof(Column) + m_blocks.capacity() * sizeof(Block) +
+                   m_disabled.bytes() +
                    (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
     for (const RowChanges& changes : m_rowChanges)
         bytes += changes.bytes();

@@ -34,15 +34,17 @@ uint32_t Query<Terms...>::slot()
         QueryTerms terms;
         [[maybe_unused]] const auto add = [&]<class Term>() {
             using Traits = TermTraits<Term>;
-            const ComponentId id = componentId<typename Traits::Component>();
-            if (Traits::kKind == TermKind::without)
-                terms.without.set(id);
-            else if (!Traits::kOptional)
-                terms.with.set(id);
-            if (Traits::kKind == TermKind::data)
-                terms.data.push_back(id);
-            if (Traits::kKind == TermKind::changed)
-                terms.changed.push_back(id);
+            if constexpr (Traits::kKind != TermKind::option) {
+                const ComponentId id = componentId<typename Traits::Component>();
+                if (Traits::kKind == TermKind::without)
+                    terms.without.set(id);
+                else if (!Traits::kOptional)
+                    terms.with.set(id);
+                if (Traits::kKind == TermKind::data)
+                    terms.data.push_back(id);
+                if (Traits::kKind == TermKind::changed)
+                    terms.changed.push_back(id);
+            }
         };
         (add.template operator()<Terms>(), ...);
         return registerQuery(terms);
@@ -51,11 +53,25 @@ uint32_t Query<Terms...>::slot()
 }
 
 template <class... Terms>
+uint32_t Query<Terms...>::count() const
+{
+    uint32_t rows = m_cache->rowCount();
+    for (const Match& match : m_cache->matches())
+        rows -= kSeesDisabled ? 0 : match.archetype->disabled().count();
+    return rows;
+}
+
+template <class... Terms>
 uint32_t Query<Terms...>::segmentCount() const
 {
     uint32_t segments = 0;
-    for (const Match& match : m_cache->matches())
-        segments += match.archetype->segmentCount();
+    for (const Match& match : m_cache->matches()) {
+        if (kSeesDisabled || match.archetype->disabled().count() == 0)
+            segments += match.archetype->segmentCount();
+        else
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run&) { ++segments; });
+    }
     return segments;
 }
 
@@ -167,20 +183,32 @@ void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row, uint32_t c
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) const
+void Query<Terms...>::callMarked(F& f, const Run& run) const
 {
+    mark(*run.match, run.segment, run.row, run.count);
+    callRun(f, *run.match, run.first(), run.count);
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callChanged(F& f, const Run& segment) const
+{
+    const Match& match = *segment.match;
     const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    const uint32_t first = segment.first();
+    const uint32_t rows = segment.count;
+    const bool skips = !kSeesDisabled && archetype.disabled().count(segment.segment) != 0;
     const auto columns = columnPointers(match, first, DataIndices());
     const Entity* entities = archetype.entities().data() + first;
     for (uint32_t word = 0; word * 64 < rows; ++word) {
         const uint32_t left = rows - word * 64;
-        uint64_t bits = changedRows(match, segment, word);
+        uint64_t bits = changedRows(match, segment.segment, word);
         bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
+        if (skips)
+            bits &= ~archetype.disabled().word(first + word * 64);
         for (; bits != 0; bits &= bits - 1) {
             const uint32_t row = word * 64 + static_cast<uint32_t>(std::countr_zero(bits));
-            mark(match, segment, row, 1);
+            mark(match, segment.segment, row, 1);
             callRow(f, entities, row, columns, DataIndices());
         }
     }
@@ -203,65 +231,84 @@ auto Query<Terms...>::segmentArgument(const Columns& columns)
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callSegment(F& f, const Match& match, uint32_t segment,
-                                  uint32_t ordinal) const
+void Query<Terms...>::callSegment(F& f, const Run& run, uint32_t ordinal) const
 {
-    const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
-    mark(match, segment, 0, rows);
-    const auto columns = columnPointers(match, first, DataIndices());
+    mark(*run.match, run.segment, run.row, run.count);
+    const auto columns = columnPointers(*run.match, run.first(), DataIndices());
     [&]<size_t... k>(std::index_sequence<k...>)
     {
-        f(Segment{archetype.entities().data() + first, rows, ordinal},
+        f(Segment{run.match->archetype->entities().data() + run.first(), run.count, ordinal},
           segmentArgument<k>(columns)...);
     }
     (DataIndices());
 }
 
 template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegments(Visit&& visit) const
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsOf(const Match& match, uint32_t segment, Visit&& visit) const
 {
-    const IterationGuard guard(*m_iterating);
-    uint32_t ordinal = 0;
-    for (const Match& match : m_cache->matches())
-        for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
-            if (segmentPasses(match, s))
-                visit(match, s, ordinal++);
+    const Archetype& archetype = *match.archetype;
+    const uint32_t first = segment << archetype.segmentShift();
+    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    if (kWhole || kSeesDisabled || archetype.disabled().count(segment) == 0) [[likely]]
+        return visit(Run{&match, segment, 0, rows});
+    archetype.disabled().eachEnabledRun(first, first + rows, [&](uint32_t row, uint32_t count) {
+        visit(Run{&match, segment, row - first, count});
+    });
 }
 
 template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegmentsParallel(Visit&& visit) const
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRuns(Visit&& visit) const
 {
+    const IterationGuard guard(*m_iterating);
+    for (const Match& match : m_cache->matches())
+        for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+            if (segmentPasses(match, s))
+                forRunsOf<kWhole>(match, s, visit);
+}
+
+template <class... Terms>
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsParallel(Visit&& visit) const
+{
+    // A task per segment, whatever its runs: they share change marks, which one thread writes.
+    struct Task {
+        Run segment;
+        uint32_t ordinal; // of its first run
+    };
     std::vector<Task> tasks;
-    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s}); });
+    uint32_t ordinal = 0;
+    forRuns<true>([&](const Run& segment) {
+        tasks.push_back({segment, ordinal});
+        forRunsOf<kWhole>(*segment.match, segment.segment, [&](const Run&) { ++ordinal; });
+    });
     const IterationGuard guard(*m_iterating);
     const auto count = static_cast<uint32_t>(tasks.size());
-    const auto run = [&](uint32_t i) { visit(*tasks[i].match, tasks[i].segment, i); };
+    const auto call = [&](uint32_t i) {
+        uint32_t at = tasks[i].ordinal;
+        forRunsOf<kWhole>(*tasks[i].segment.match, tasks[i].segment.segment,
+                          [&](const Run& run) { visit(run, at++); });
+    };
     if (count >= kInlineSegments)
-        return parallelFor(count, run);
+        return parallelFor(count, call);
     for (uint32_t i = 0; i < count; ++i)
-        run(i);
+        call(i);
 }
 
 template <class... Terms>
 template <class F>
 void Query<Terms...>::eachSegment(F&& f) const
 {
-    forSegments([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
+    uint32_t ordinal = 0;
+    forRuns<false>([&](const Run& run) { callSegment(f, run, ordinal++); });
 }
 
 template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEachSegment(F&& f) const
 {
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
+    forRunsParallel<false>([&](const Run& run, uint32_t ordinal) { callSegment(f, run, ordinal); });
 }
 
 template <class... Terms>
@@ -269,13 +316,18 @@ template <class F>
 void Query<Terms...>::each(F&& f) const
 {
     if constexpr (kChangedCount > 0) {
-        forSegments([&](const Match& match, uint32_t s, uint32_t) { callChanged(f, match, s); });
+        forRuns<true>([&](const Run& run) { callChanged(f, run); });
         return;
     }
     // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
     const IterationGuard guard(*m_iterating);
     for (const Match& match : m_cache->matches()) {
         const Archetype& archetype = *match.archetype;
+        if (!kSeesDisabled && archetype.disabled().count() != 0) [[unlikely]] {
+            for (uint32_t s = 0; s < archetype.segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+            continue;
+        }
         const uint32_t rows = archetype.count();
         for (uint32_t s = 0; !kReadOnly && s < archetype.segmentCount(); ++s)
             mark(match, s, 0,
@@ -289,16 +341,12 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEach(F&& f) const
 {
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
-        if constexpr (kChangedCount > 0) {
-            callChanged(f, match, segment);
-        } else {
-            const uint32_t rows = match.archetype->segmentRows();
-            const uint32_t first = segment * rows;
-            const uint32_t count = std::min(rows, match.archetype->count() - first);
-            mark(match, segment, 0, count);
-            callRun(f, match, first, count);
-        }
+    constexpr bool kWhole = kChangedCount > 0;
+    forRunsParallel<kWhole>([&](const Run& run, uint32_t) {
+        if constexpr (kChangedCount > 0)
+            callChanged(f, run);
+        else
+            callMarked(f, run);
     });
 }
 

@@ -1,32 +1,20 @@
 #include "runtime/ecs/world.h"
 
 #include "runtime/assert.h"
+#include "runtime/ecs/destroyed_log.h"
+#include "runtime/ecs/observer_table.h"
 
 namespace penumbra::ecs {
 
 World::World()
 {
     static_cast<void>(archetypeOf(ComponentMask{}));
+#ifndef NDEBUG
+    rememberDestroyed(true);
+#endif
 }
 
-void World::failStale(Entity entity) const
-{
-    const bool known = entity.index < m_entities.indexCount();
-    PENUMBRA_ASSERT(false, "entity {} is not alive; {}", toString(entity),
-                    entity.isNull()       ? "it is the null entity"
-                    : entity.isDeferred() ? "it is a command buffer's, real after playback"
-                    : known ? fmt::format("index {} is at generation {}", entity.index,
-                                          m_entities[entity].generation)
-                            : fmt::format("the world has {} indices", m_entities.indexCount()));
-    std::abort(); // not reached; the assert does not say so to the compiler
-}
-
-void World::failMissing(Entity entity, ComponentId id) const
-{
-    PENUMBRA_ASSERT(false, "entity {} has no {}; it has: {}", toString(entity),
-                    componentInfo(id).name, toString(components(entity)));
-    std::abort(); // as above
-}
+World::~World() = default;
 
 Archetype& World::archetypeOf(const ComponentMask& mask)
 {
@@ -98,6 +86,8 @@ World::Place World::move(Entity entity, Archetype& to)
     const Place from = place(entity);
     const uint32_t row = to.append({&entity, 1}, m_stamp);
     to.copyRow(row, *from.archetype, from.row);
+    if (from.archetype->disabled().test(from.row)) [[unlikely]]
+        to.setDisabled(row, true, m_stamp);
     takeRowOut(*from.archetype, from.row);
     m_entities[entity].archetype = to.index();
     m_entities[entity].row = row;
@@ -106,7 +96,7 @@ World::Place World::move(Entity entity, Archetype& to)
 
 World::Place World::addSet(Entity entity, const ComponentSet& set)
 {
-    assertStructural();
+    assertStructural(entity);
     const Place from = place(entity);
     std::vector<Archetype*>& edges = from.archetype->withSet;
     if (set.slot >= edges.size())
@@ -124,8 +114,10 @@ World::Place World::addSet(Entity entity, const ComponentSet& set)
 
 void World::removeSet(Entity entity, const ComponentSet& set)
 {
-    assertStructural();
+    assertStructural(entity);
     const Place from = place(entity);
+    if (m_observers != nullptr) [[unlikely]]
+        tellRemoved(entity, set.mask);
     std::vector<Archetype*>& edges = from.archetype->withoutSet;
     if (set.slot >= edges.size())
         edges.resize(set.slot + 1);
@@ -135,21 +127,23 @@ void World::removeSet(Entity entity, const ComponentSet& set)
         m_hierarchy.detach(entity);
     if (edges[set.slot] != from.archetype)
         move(entity, *edges[set.slot]);
+    if (m_observers != nullptr) [[unlikely]]
+        settleObservers();
 }
 
 void World::attachOrFail(Entity child, Entity parent)
 {
-    assertStructural();
+    assertStructural(child);
     static_cast<void>(place(child));
     static_cast<void>(place(parent));
     const bool attached = m_hierarchy.attach(child, parent);
-    PENUMBRA_ASSERT(attached, "{} under {} closes a cycle; setParent() tells", toString(child),
-                    toString(parent));
+    PENUMBRA_ASSERT(attached, "{} under {} closes a cycle; setParent() tells", describe(child),
+                    describe(parent));
 }
 
 bool World::setParent(Entity child, Entity parent)
 {
-    assertStructural();
+    assertStructural(child);
     static_cast<void>(place(child));
     static_cast<void>(place(parent));
     if (m_hierarchy.isWithin(parent, child))
@@ -174,7 +168,16 @@ void World::destroyLeaf(Entity entity)
 
 void World::destroy(Entity entity)
 {
-    assertStructural();
+    assertStructural(entity);
+    if (isWatched()) [[unlikely]] {
+        static_cast<void>(place(entity));
+        return destroyWatched({&entity, 1});
+    }
+    destroyTree(entity);
+}
+
+void World::destroyTree(Entity entity)
+{
     if (!m_hierarchy.contains(entity))
         return destroyLeaf(entity);
     m_doomed.clear();
@@ -190,9 +193,12 @@ void World::destroyMany(std::span<const Entity> entities)
 {
     for (const Entity entity : entities)
         static_cast<void>(place(entity));
+    assertStructural();
+    if (isWatched()) [[unlikely]]
+        return destroyWatched(entities);
     for (const Entity entity : entities)
         if (alive(entity)) // else it went with its parent
-            destroy(entity);
+            destroyTree(entity);
 }
 
 ComponentMask World::components(Entity entity) const

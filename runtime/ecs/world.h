@@ -18,21 +18,38 @@
 #include "runtime/ecs/hierarchy.h"
 #include "runtime/ecs/query.h"
 
+#include <functional>
 #include <mutex>
 #include <unordered_map>
 
 namespace penumbra::ecs {
 
+struct ArchetypeStatistics {
+    ComponentMask components;
+    uint32_t rows = 0, disabledRows = 0, segments = 0;
+    size_t valueBytes = 0, blockBytes = 0, bookBytes = 0; // as below
+};
+
 struct WorldStatistics {
-    uint32_t entities = 0, archetypes = 0, segments = 0;
+    uint32_t entities = 0, disabled = 0, archetypes = 0, segments = 0;
     size_t valueBytes = 0; // of living components
     size_t blockBytes = 0; // allocated for them
     size_t bookBytes = 0;  // ids, versions, change bits, entity table, hierarchy, query caches
+    std::vector<ArchetypeStatistics> perArchetype; // in the order they were made
 };
+// A table: totals, then a line per archetype; in KiB.
+[[nodiscard]] std::string toString(const WorldStatistics& statistics);
+
+class DestroyedLog;
+class Observer;
+class ObserverTable;
+struct Observation;
+enum class ObservedEvent : uint8_t;
 
 class World {
 public:
     World();
+    ~World();
     World(const World&) = delete;
     World& operator=(const World&) = delete;
 
@@ -49,6 +66,13 @@ public:
     void destroyMany(std::span<const Entity> entities);
     [[nodiscard]] bool alive(Entity entity) const { return m_entities.alive(entity); }
     [[nodiscard]] uint32_t count() const { return m_entities.count(); }
+
+    // --- Enabled or not. Queries skip disabled entities (but for WithDisabled); all else works on
+    // them as before, and nothing moves. Per entity: what is below a disabled one stays as it is,
+    // unless the reach says otherwise, and what is attached later is enabled. Enabling counts as a
+    // change of all components.
+    void setEnabled(Entity entity, bool enabled, Reach reach = Reach::entity);
+    [[nodiscard]] bool isEnabled(Entity entity) const;
 
     // --- Components. add overwrites what is there; set needs it there; remove ignores absence.
     template <class... Ts>
@@ -99,17 +123,24 @@ public:
     [[nodiscard]] uint64_t version() const { return m_stamp.version; }
     void advance() { m_stamp = {m_stamp.version + 1, m_stamp.version}; }
 
-    // --- Looking inside.
-    // One line per component: name, bytes, version, words as numbers.
+    // --- Looking inside. What is called and shown how is up to debug_hooks.h as well.
+    // "12#3 'ball'"; the name only if it has one. Any entity may be asked about.
+    [[nodiscard]] std::string describe(Entity entity) const;
+    // What it is, its place in the hierarchy, and one line per component: name, bytes, version,
+    // value.
     [[nodiscard]] std::string dump(Entity entity) const;
     [[nodiscard]] WorldStatistics statistics() const;
     [[nodiscard]] ComponentMask components(Entity entity) const;
+    // Messages about a stale Entity then tell what it was. On in debug builds.
+    void rememberDestroyed(bool remember);
     void trim(); // gives back memory that holds no rows; else it is kept for the next ones
 
 private:
     friend class SystemContext;
     friend class Schedule;
     friend class CommandPlayback;
+    friend Observer observe(World&, ObservedEvent, ComponentId,
+                            std::function<void(const Observation&)>);
 
     struct Place {
         Archetype* archetype;
@@ -124,8 +155,11 @@ private:
     }
     [[noreturn]] void failStale(Entity entity) const;
     [[noreturn]] void failMissing(Entity entity, ComponentId id) const;
-    void assertStructural() const;
+    void assertStructural(Entity entity = {}) const;
     void assertOutsideSystems() const;
+    [[nodiscard]] std::string ofEntity(Entity entity) const; // " of 12#3 'ball'"; null: ""
+    [[nodiscard]] static std::string currentSystem();        // of this thread: "system 'move'"
+    [[nodiscard]] std::string nameOf(Entity entity) const;   // empty: none
 
     [[nodiscard]] Archetype& archetypeOf(const ComponentMask& mask);
     [[nodiscard]] Archetype& archetypeOf(const ComponentSet& set);
@@ -137,6 +171,18 @@ private:
     Place move(Entity entity, Archetype& to);
     void takeRowOut(Archetype& archetype, uint32_t row);
     void destroyLeaf(Entity entity);
+    void destroyTree(Entity entity);
+    void destroyWatched(std::span<const Entity> entities);
+    [[nodiscard]] bool isWatched() const // destroy() has more to do than to destroy
+    {
+        return m_observers != nullptr || m_destroyed != nullptr;
+    }
+    // For observers. `given` components came, or were set if they were there `before`.
+    void tellGiven(std::span<const Entity> entities, const ComponentMask& before,
+                   const ComponentMask& given);
+    void tellRemoved(Entity entity, const ComponentMask& removed);
+    void settleObservers();
+    [[nodiscard]] bool isTelling() const;
     void attachOrFail(Entity child, Entity parent);
     template <class T>
     static void store(const Place& place, const T& value);
@@ -157,6 +203,8 @@ private:
     std::vector<uint32_t> m_mergeSlots; // scratch of command playback
     Stamp m_stamp{1, 0};
     bool m_inSystems = false;
+    std::unique_ptr<ObserverTable> m_observers; // null before the first observer
+    std::unique_ptr<DestroyedLog> m_destroyed;  // null: not wanted
 
     mutable std::mutex m_queryMutex;                            // systems make queries at once
     mutable std::vector<std::unique_ptr<QueryCache>> m_queries; // [query slot]

@@ -6,17 +6,21 @@
 
 namespace penumbra::ecs {
 
-inline void World::assertStructural() const
+inline void World::assertStructural([[maybe_unused]] Entity entity) const
 {
-    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "structural change in a system: use context.commands()");
+    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "structural change{} in {}: use context.commands()",
+                          ofEntity(entity), currentSystem());
     PENUMBRA_DEBUG_ASSERT(m_iterating == 0,
-                          "structural change during {} iteration(s): use a CommandBuffer",
-                          m_iterating.load());
+                          "structural change{} during {} iteration(s): use a CommandBuffer",
+                          ofEntity(entity), m_iterating.load());
+    PENUMBRA_DEBUG_ASSERT(!isTelling(), "structural change{} in an observer: use its commands",
+                          ofEntity(entity));
 }
 
 inline void World::assertOutsideSystems() const
 {
-    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "World used inside a system: go through SystemContext");
+    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "World used inside a system ({}): go through SystemContext",
+                          currentSystem());
 }
 
 // createMany() arguments: T repeats one value, std::span<const T> gives one each.
@@ -58,6 +62,8 @@ Entity World::create(const Ts&... values)
     (store(place, values), ...);
     if constexpr ((std::is_same_v<Ts, Parent> || ...))
         attachOrFail(entity, std::get<const Parent&>(std::tie(values...)).entity);
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&entity, 1}, {}, componentSet<Ts...>().mask);
     return entity;
 }
 
@@ -75,6 +81,8 @@ void World::createMany(std::span<Entity> out, const Arguments&... arguments)
     if constexpr ((std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> || ...))
         for (const Entity entity : out)
             attachOrFail(entity, value<Parent>(entity).entity);
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven(out, {}, archetype.mask());
 }
 
 template <class... Ts>
@@ -82,8 +90,13 @@ void World::add(Entity entity, const Ts&... values)
 {
     if constexpr ((std::is_same_v<Ts, Parent> || ...))
         attachOrFail(entity, std::get<const Parent&>(std::tie(values...)).entity);
+    ComponentMask before;
+    if (m_observers != nullptr) [[unlikely]]
+        before = components(entity);
     const Place place = addSet(entity, componentSet<Ts...>());
     (store(place, values), ...);
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&entity, 1}, before, componentSet<Ts...>().mask);
 }
 
 template <class T>
@@ -91,6 +104,10 @@ void World::set(Entity entity, const T& value)
 {
     assertOutsideSystems();
     setStamped(entity, value, m_stamp);
+    if (m_observers != nullptr) [[unlikely]] {
+        const ComponentMask& mask = componentSet<T>().mask;
+        tellGiven({&entity, 1}, mask, mask);
+    }
 }
 
 template <class T>
