@@ -249,6 +249,7 @@ Entity Archetype::closeGap(uint32_t row, Stamp stamp)
         }
         markStructural(row, stamp);
     }
+    m_disabled.removeRow(row, last, m_segmentShift);
     m_entities.pop_back();
     return moved;
 }
@@ -383,7 +384,7 @@ size_t Archetype::bookBytes() const
                    m_versions.capacity() * sizeof(uint64_t) +
                    m_columns.capacity() * sizeof(Column) +
                    m_blocks.capacity() * sizeof(std::byte*) + pages.capacity() * sizeof(uint32_t) +
-                   m_columnVersions.capacity() * sizeof(uint64_t) +
+                   m_columnVersions.capacity() * sizeof(uint64_t) + m_disabled.bytes() +
                    (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
     for (const RowChanges& changes : m_rowChanges)
         bytes += changes.bytes();

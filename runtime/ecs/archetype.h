@@ -13,6 +13,7 @@
 #pragma once
 
 #include "runtime/ecs/component.h"
+#include "runtime/ecs/disabled_rows.h"
 #include "runtime/ecs/entity_table.h"
 #include "runtime/ecs/row_changes.h"
 
@@ -162,6 +163,18 @@ public:
         return changes < 0 ? ~uint64_t{0} : m_rowChanges[changes].changed(segment, word, since);
     }
 
+    // Disabled rows (World::setEnabled). A row that is enabled again counts as changed: readers
+    // that skipped it may have missed something.
+    [[nodiscard]] const DisabledRows& disabled() const { return m_disabled; }
+    void setDisabled(uint32_t row, bool disabled, Stamp stamp)
+    {
+        if (!disabled && m_disabled.test(row))
+            markStructural(row, 1, stamp);
+        m_disabled.set(row, m_segmentShift, disabled);
+    }
+    // `more` rows may then be appended and disabled without allocation.
+    void makeDisabledRoom(uint32_t more) { m_disabled.makeRoom(count() + more, m_segmentShift); }
+
     [[nodiscard]] size_t blockBytes() const { return m_blocks.size() * m_blockBytes; }
     [[nodiscard]] size_t valueBytes() const { return size_t{count()} * m_rowBytes; }
     [[nodiscard]] size_t bookBytes() const;
@@ -208,6 +221,7 @@ private:
     std::vector<uint64_t> m_versions; // [segment][column], of the last write; first lanes only
     std::vector<uint64_t> m_columnVersions; // [column]
     std::vector<RowChanges> m_rowChanges;
+    DisabledRows m_disabled;
     std::array<int16_t, kMaxComponents> m_columnOf;
     ComponentMask m_mask;
     uint32_t m_index;

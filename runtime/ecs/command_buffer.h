@@ -76,6 +76,12 @@ public:
         (record(entity, componentId<Ts>(), Kind::remove, nullptr, 0), ...);
     }
     void setParent(Entity child, Entity parent) { add(child, Parent{parent}); }
+    // As World::setEnabled(); done after all moves and before the destroys, in the order recorded.
+    void setEnabled(Entity entity, bool enabled, Reach reach = Reach::entity)
+    {
+        m_ops.emplace_back(entity, static_cast<uint32_t>(reach), ComponentId{0},
+                           enabled ? Kind::enable : Kind::disable);
+    }
 
     [[nodiscard]] bool isEmpty() const { return m_ops.empty(); }
     [[nodiscard]] size_t count() const { return m_ops.size(); }
@@ -84,10 +90,10 @@ public:
 private:
     friend class CommandPlayback;
 
-    enum class Kind : uint8_t { create, destroy, add, set, remove };
+    enum class Kind : uint8_t { create, destroy, add, set, remove, enable, disable };
     struct Op {
         Entity target;
-        uint32_t value; // offset in m_values; unused by create, destroy, remove
+        uint32_t value; // offset in m_values; of enable, disable the reach
         uint8_t component;
         Kind kind;
         uint16_t buffer = 0; // this and next: for playback

@@ -1,14 +1,18 @@
 // Playback of command buffers, in order:
 //   collect    ops -> one slot per entity; new entities get their ids, in recording order
 //   merge      a slot's ops -> its final set of components; deferred entities in values -> real
-//   ones move       slots that go from one archetype to one other form a run, which moves column by
+//   tell       observers, of what goes
+//   move       slots that go from one archetype to one other form a run, which moves column by
 //              column; runs go by (destination, source)
 //   write      values, in recording order
-//   attach     parents; then destroys
+//   attach     parents
+//   enable     and disable
+//   tell       what came, then what was set
+//   destroy    which tells by itself
 #include "runtime/ecs/command_buffer.h"
 
 #include "runtime/assert.h"
-#include "runtime/ecs/world.h"
+#include "runtime/ecs/observer_table.h"
 
 #include <algorithm>
 
@@ -23,19 +27,34 @@ public:
     PlaybackStatistics run()
     {
         m_world.assertStructural();
+        ObserverTable* const observers = m_world.m_observers;
+        if (observers != nullptr)
+            observers->enter();
         collect();
         for (uint32_t i = 0; i < m_slots.size(); ++i)
             merge(i);
+        if (observers != nullptr)
+            tell(*observers, ObservedEvent::remove);
         move();
         for (const Slot& slot : m_slots)
             write(slot);
         for (Slot& slot : m_slots)
             attach(slot);
+        if (m_enables)
+            setEnabled();
+        if (observers != nullptr) {
+            tell(*observers, ObservedEvent::add);
+            tell(*observers, ObservedEvent::set);
+        }
+        std::vector<Entity> doomed;
         for (const Slot& slot : m_slots)
-            if (slot.destroyed && m_world.alive(slot.entity)) // else it went with its parent
-                m_world.destroy(slot.entity);
+            if (slot.destroyed)
+                doomed.push_back(slot.entity);
+        m_world.destroyMany(doomed);
         for (CommandBuffer* buffer : m_buffers)
             buffer->clear();
+        if (observers != nullptr)
+            observers->leave();
         return m_statistics;
     }
 
@@ -66,6 +85,9 @@ private:
     void moveRun(const Run& run);
     void write(const Slot& slot);
     void attach(Slot& slot);
+    void setEnabled();
+    void tell(ObserverTable& observers, ObservedEvent event);
+    [[nodiscard]] ComponentMask whatHappened(const Slot& slot, ObservedEvent event) const;
     [[nodiscard]] Entity real(Entity entity, uint32_t buffer) const;
     [[nodiscard]] std::byte* valueOf(const Op& op) const
     {
@@ -81,6 +103,7 @@ private:
     std::vector<Run> m_runs;
     uint32_t m_lastRun = 0;        // most entities go the way of the one before
     Archetype* m_lastTo = nullptr; // likewise
+    bool m_enables = false;        // there are such commands
     PlaybackStatistics m_statistics;
 };
 
@@ -168,6 +191,10 @@ void CommandPlayback::merge(uint32_t slotIndex)
         switch (op->kind) {
         case Kind::create:
             break;
+        case Kind::enable:
+        case Kind::disable:
+            m_enables = true;
+            break;
         case Kind::destroy:
             slot.destroyed = true;
             break;
@@ -194,6 +221,8 @@ void CommandPlayback::merge(uint32_t slotIndex)
             break;
         }
     }
+    if (slot.destroyed) // wins over all that is said besides
+        mask = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
     if (m_lastTo == nullptr || !(m_lastTo->mask() == mask))
         m_lastTo = &m_world.archetypeOf(mask);
     slot.to = m_lastTo;
@@ -226,6 +255,8 @@ void CommandPlayback::moveRun(const Run& run)
 
 void CommandPlayback::write(const Slot& slot)
 {
+    if (slot.destroyed)
+        return;
     const uint32_t row = m_world.m_entities.place(slot.entity).row;
     ComponentMask there = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
     for (const Op* op = slot.first; op != nullptr; op = op->next) {
@@ -261,12 +292,55 @@ void CommandPlayback::attach(Slot& slot)
         return;
     ++m_statistics.refused;
     const Entity old = hierarchy.parentOf(slot.entity);
-    if (old.isNull()) {
-        m_world.remove<Parent>(slot.entity);
+    if (old.isNull() && slot.from != nullptr && slot.from->mask().test(m_parent))
+        return m_world.remove<Parent>(slot.entity);
+    if (old.isNull()) { // observers were not told that it has one
+        ComponentMask mask = m_world.components(slot.entity);
+        if (mask.test(m_parent)) {
+            mask.reset(m_parent);
+            m_world.move(slot.entity, m_world.place(slot.entity), m_world.archetypeOf(mask));
+        }
         return;
     }
     const Place at = m_world.place(slot.entity);
     at.archetype->write(m_parent, at.row, &old);
+}
+
+void CommandPlayback::setEnabled()
+{
+    for (uint32_t b = 0; b < m_buffers.size(); ++b)
+        for (const Op& op : m_buffers[b]->m_ops) {
+            const bool enable = op.kind == Kind::enable;
+            if (!enable && op.kind != Kind::disable)
+                continue;
+            const Entity entity = real(op.target, b);
+            if (m_world.alive(entity)) // else counted as dropped already
+                m_world.setEnabled(entity, enable, static_cast<Reach>(op.value));
+        }
+}
+
+ComponentMask CommandPlayback::whatHappened(const Slot& slot, ObservedEvent event) const
+{
+    const ComponentMask before = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
+    if (event == ObservedEvent::remove)
+        return before - slot.to->mask();
+    const ComponentMask& now = m_world.place(slot.entity).archetype->mask();
+    if (event == ObservedEvent::add)
+        return now - before;
+    ComponentMask written;
+    for (const Op* op = slot.destroyed ? nullptr : slot.first; op != nullptr; op = op->next)
+        if ((op->kind == Kind::add || op->kind == Kind::set) && now.test(op->component) &&
+            before.test(op->component))
+            written.set(op->component);
+    return written;
+}
+
+void CommandPlayback::tell(ObserverTable& observers, ObservedEvent event)
+{
+    ObserverRun run(observers, event);
+    for (const Slot& slot : m_slots)
+        if (event != ObservedEvent::remove || slot.from != nullptr)
+            run.add(slot.entity, m_world.components(slot.entity), whatHappened(slot, event));
 }
 
 PlaybackStatistics play(World& world, std::span<CommandBuffer* const> buffers)

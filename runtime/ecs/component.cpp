@@ -36,6 +36,10 @@ uint64_t hashName(std::string_view name)
 
 } // namespace
 
+// [ComponentId], for debug/gdb_printers.py: a name that debuggers find.
+extern const ComponentInfo* debuggedComponents;
+const ComponentInfo* debuggedComponents = nullptr;
+
 std::string toString(Entity entity)
 {
     return entity.isNull() ? "null" : fmt::format("{}#{}", entity.index, entity.generation);
@@ -63,6 +67,7 @@ ComponentId registerComponent(const ComponentInfo& info)
                     kMaxComponents);
     const auto id = static_cast<ComponentId>(count);
     all.infos[id] = info;
+    debuggedComponents = all.infos.data();
     all.infos[id].nameHash = hash;
     all.byHash.emplace(hash, id);
     all.count.store(count + 1, std::memory_order_release);

@@ -27,6 +27,9 @@ static_assert(sizeof(Parent) == 8 && std::is_trivially_copyable_v<Parent>);
 template <>
 inline constexpr std::array<uint32_t, 1> kEntityFields<Parent>{offsetof(Parent, entity)};
 
+// Whom an operation is for: one entity, or it and everything below it at that moment.
+enum class Reach : uint8_t { entity, subtree };
+
 class Hierarchy {
 public:
     struct Slot {

@@ -46,7 +46,8 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
         if (match == nullptr)
             continue;
         const Archetype& archetype = *run.archetype;
-        for (uint32_t row = run.row; !kReadOnly && row < run.row + run.count;) {
+        const bool skipsSome = skips(archetype); // then rows are marked one by one
+        for (uint32_t row = run.row; !kReadOnly && !skipsSome && row < run.row + run.count;) {
             const uint32_t first = row & (archetype.segmentRows() - 1);
             const uint32_t length =
                 std::min(archetype.segmentRows() - first, run.row + run.count - row);
@@ -58,6 +59,12 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
         uint32_t parentSlot = kNone;
         First* parent = nullptr;
         for (uint32_t i = 0; i < run.count; ++i) {
+            if (skipsSome) [[unlikely]] {
+                if (archetype.disabled().test(run.row + i))
+                    continue;
+                mark(*match, (run.row + i) >> archetype.segmentShift(),
+                     (run.row + i) & (archetype.segmentRows() - 1), 1);
+            }
             if (const uint32_t slot = order[run.slot + i].parentSlot; slot != parentSlot) {
                 parentSlot = slot;
                 parent = slot == kNone ? nullptr : valueAt(slot);

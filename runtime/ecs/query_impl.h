@@ -44,15 +44,17 @@ template <class... Terms>
         QueryTerms terms;
         [[maybe_unused]] const auto add = [&]<class Term>() {
             using Traits = TermTraits<Term>;
-            const ComponentId id = componentId<typename Traits::Component>();
-            if (Traits::kKind == TermKind::without)
-                terms.without.set(id);
-            else if (!Traits::kOptional)
-                terms.with.set(id);
-            if (Traits::kKind == TermKind::data)
-                terms.data.push_back(id);
-            if (Traits::kKind == TermKind::changed)
-                terms.changed.push_back(id);
+            if constexpr (Traits::kKind != TermKind::option) {
+                const ComponentId id = componentId<typename Traits::Component>();
+                if (Traits::kKind == TermKind::without)
+                    terms.without.set(id);
+                else if (!Traits::kOptional)
+                    terms.with.set(id);
+                if (Traits::kKind == TermKind::data)
+                    terms.data.push_back(id);
+                if (Traits::kKind == TermKind::changed)
+                    terms.changed.push_back(id);
+            }
         };
         (add.template operator()<Terms>(), ...);
         return registerQuery(terms);
@@ -62,11 +64,25 @@ template <class... Terms>
 }
 
 template <class... Terms>
+uint32_t Query<Terms...>::count() const
+{
+    uint32_t rows = m_cache->rowCount();
+    for (const Match& match : m_cache->matches())
+        rows -= kSeesDisabled ? 0 : match.archetype->disabled().count();
+    return rows;
+}
+
+template <class... Terms>
 uint32_t Query<Terms...>::segmentCount() const
 {
     uint32_t segments = 0;
-    for (const Match& match : m_cache->matches())
-        segments += match.archetype->segmentCount();
+    for (const Match& match : m_cache->matches()) {
+        if (!skips(*match.archetype))
+            segments += match.archetype->segmentCount();
+        else
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run&) { ++segments; });
+    }
     return segments;
 }
 
@@ -188,11 +204,21 @@ void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row, uint32_t c
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) const
+void Query<Terms...>::callMarked(F& f, const Run& run) const
 {
+    mark(*run.match, run.segment, run.row, run.count);
+    callRun(f, *run.match, run.first(), run.count);
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callChanged(F& f, const Run& segment) const
+{
+    const Match& match = *segment.match;
     const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    const uint32_t first = segment.first();
+    const uint32_t rows = segment.count;
+    const bool skipsSome = skips(archetype);
     const auto columns = columnPointers(match, first, DataIndices());
     const Entity* entities = archetype.entities().data() + first;
     // First which rows, without a branch per row: where few changed, here and there, wrong guesses
@@ -201,8 +227,10 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) co
     uint32_t count = 0;
     for (uint32_t word = 0; word * 64 < rows; ++word) {
         const uint32_t left = rows - word * 64;
-        uint64_t bits = changedRows(match, segment, word);
+        uint64_t bits = changedRows(match, segment.segment, word);
         bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
+        if (skipsSome)
+            bits &= ~archetype.disabled().word(first + word * 64);
         if (bits == ~uint64_t{0}) {
             for (uint32_t i = 0; i < 64; ++i)
                 changed[count++] = static_cast<uint16_t>(word * 64 + i);
@@ -218,7 +246,7 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) co
         while (bits != 0);
     }
     for (uint32_t i = 0; i < count; ++i) {
-        mark(match, segment, changed[i], 1);
+        mark(match, segment.segment, changed[i], 1);
         callRow(f, entities, changed[i], columns, DataIndices());
     }
 }
@@ -240,66 +268,85 @@ auto Query<Terms...>::segmentArgument(const Columns& columns)
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callSegment(F& f, const Match& match, uint32_t segment,
-                                  uint32_t ordinal) const
+void Query<Terms...>::callSegment(F& f, const Run& run, uint32_t ordinal) const
 {
-    const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
-    mark(match, segment, 0, rows);
-    const auto columns = columnPointers(match, first, DataIndices());
+    mark(*run.match, run.segment, run.row, run.count);
+    const auto columns = columnPointers(*run.match, run.first(), DataIndices());
     [&]<size_t... k>(std::index_sequence<k...>)
     {
-        f(Segment{archetype.entities().data() + first, rows, ordinal},
+        f(Segment{run.match->archetype->entities().data() + run.first(), run.count, ordinal},
           segmentArgument<k>(columns)...);
     }
     (DataIndices());
 }
 
 template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegments(Visit&& visit) const
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsOf(const Match& match, uint32_t segment, Visit&& visit) const
+{
+    const Archetype& archetype = *match.archetype;
+    const uint32_t first = segment << archetype.segmentShift();
+    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    if (kWhole || kSeesDisabled || archetype.disabled().count(segment) == 0) [[likely]]
+        return visit(Run{&match, segment, 0, rows});
+    archetype.disabled().eachEnabledRun(first, first + rows, [&](uint32_t row, uint32_t count) {
+        visit(Run{&match, segment, row - first, count});
+    });
+}
+
+template <class... Terms>
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRuns(Visit&& visit) const
 {
     const IterationGuard guard(*m_iterating);
-    uint32_t ordinal = 0;
     for (const Match& match : m_cache->matches())
         for (uint32_t s = archetypePasses(match) ? 0 : kNone; s < match.archetype->segmentCount();
              ++s)
             if (segmentPasses(match, s))
-                visit(match, s, ordinal++);
+                forRunsOf<kWhole>(match, s, visit);
 }
 
 template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegmentsParallel(Visit&& visit) const
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsParallel(Visit&& visit) const
 {
+    // A task per segment, whatever its runs: they share change marks, which one thread writes.
+    struct Task {
+        Run segment;
+        uint32_t ordinal; // of its first run
+    };
     std::vector<Task> tasks;
-    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s, 1}); });
+    uint32_t ordinal = 0;
+    forRuns<true>([&](const Run& segment) {
+        tasks.push_back({segment, ordinal});
+        forRunsOf<kWhole>(*segment.match, segment.segment, [&](const Run&) { ++ordinal; });
+    });
     const IterationGuard guard(*m_iterating);
     const auto count = static_cast<uint32_t>(tasks.size());
-    const auto run = [&](uint32_t i) { visit(*tasks[i].match, tasks[i].segment, i); };
+    const auto call = [&](uint32_t i) {
+        uint32_t at = tasks[i].ordinal;
+        forRunsOf<kWhole>(*tasks[i].segment.match, tasks[i].segment.segment,
+                          [&](const Run& run) { visit(run, at++); });
+    };
     if (count >= kInlineSegments)
-        return parallelFor(count, run);
+        return parallelFor(count, call);
     for (uint32_t i = 0; i < count; ++i)
-        run(i);
+        call(i);
 }
 
 template <class... Terms>
 template <class F>
 void Query<Terms...>::eachSegment(F&& f) const
 {
-    forSegments([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
+    uint32_t ordinal = 0;
+    forRuns<false>([&](const Run& run) { callSegment(f, run, ordinal++); });
 }
 
 template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEachSegment(F&& f) const
 {
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
+    forRunsParallel<false>([&](const Run& run, uint32_t ordinal) { callSegment(f, run, ordinal); });
 }
 
 template <class... Terms>
@@ -307,13 +354,18 @@ template <class F>
 void Query<Terms...>::each(F&& f) const
 {
     if constexpr (kChangedCount > 0) {
-        forSegments([&](const Match& match, uint32_t s, uint32_t) { callChanged(f, match, s); });
+        forRuns<true>([&](const Run& run) { callChanged(f, run); });
         return;
     }
     // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
     const IterationGuard guard(*m_iterating);
     for (const Match& match : m_cache->matches()) {
         Archetype& archetype = *match.archetype;
+        if (skips(archetype)) [[unlikely]] {
+            for (uint32_t s = 0; s < archetype.segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+            continue;
+        }
         const uint32_t rows = archetype.count();
         if (rows == 0)
             continue;
@@ -336,11 +388,14 @@ template <class F>
 void Query<Terms...>::parallelEach(F&& f) const
 {
     if constexpr (kChangedCount > 0) {
-        forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
-            callChanged(f, match, segment);
-        });
+        forRunsParallel<true>([&](const Run& run, uint32_t) { callChanged(f, run); });
     } else {
         // Several segments of a block in one task, where there are plenty: longer loops cost less.
+        struct Task {
+            const Match* match;
+            uint32_t segment; // the first
+            uint32_t count;
+        };
         const IterationGuard guard(*m_iterating);
         const uint32_t most = std::min(segmentCount() / 64 + 1, kBlockSegments);
         std::vector<Task> tasks;
@@ -352,6 +407,12 @@ void Query<Terms...>::parallelEach(F&& f) const
         const auto run = [&](uint32_t i) {
             const Task& task = tasks[i];
             const Archetype& archetype = *task.match->archetype;
+            if (skips(archetype)) [[unlikely]] {
+                for (uint32_t s = 0; s < task.count; ++s)
+                    forRunsOf<false>(*task.match, task.segment + s,
+                                     [&](const Run& enabled) { callMarked(f, enabled); });
+                return;
+            }
             const uint32_t rows = archetype.segmentRows();
             const uint32_t first = task.segment * rows;
             const uint32_t count = std::min(task.count * rows, archetype.count() - first);

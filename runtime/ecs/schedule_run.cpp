@@ -1,4 +1,5 @@
 // Schedule::run(): phases, task graph, versions, and the sync point.
+#include "runtime/ecs/running_system.h"
 #include "runtime/ecs/schedule_node.h"
 
 #include <chrono>
@@ -11,8 +12,9 @@ namespace penumbra::ecs {
 // what counts as changed since its last run is then the same at any number of threads.
 void Schedule::runSystem(Node& node, Stamp base)
 {
-    const Stamp stamp{base.version + 1 + node.order, base.version};
+    const Stamp stamp{base.version + 1 + node.place, base.version};
     SystemContext context(m_world, node.commands, node.name, node.access, stamp, node.lastRun);
+    const RunningSystem running(node.name);
     const auto start = std::chrono::steady_clock::now();
     node.system(context);
     const std::chrono::duration<float, std::milli> time = std::chrono::steady_clock::now() - start;
@@ -22,6 +24,7 @@ void Schedule::runSystem(Node& node, Stamp base)
         node.times[node.runs % kTimingFrames] = time.count();
     ++node.runs;
     node.lastRun = stamp.version;
+    node.lastRows = context.rows();
 }
 
 void Schedule::runPhase(const Phase& phase, Stamp base)
@@ -59,6 +62,9 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
 PlaybackStatistics Schedule::run()
 {
     m_world.assertStructural();
+    if (!m_namesChecked)
+        checkNames();
+    m_namesChecked = true;
     static_cast<void>(m_world.hierarchy()); // systems see it const: bring it up to date
     const Stamp base = m_world.m_stamp;
     m_world.m_inSystems = true;

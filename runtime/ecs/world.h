@@ -20,12 +20,24 @@
 
 namespace penumbra::ecs {
 
+struct ArchetypeStatistics {
+    ComponentMask components;
+    uint32_t rows = 0, disabledRows = 0, segments = 0;
+    size_t valueBytes = 0, blockBytes = 0, bookBytes = 0; // as below
+};
+
 struct WorldStatistics {
-    uint32_t entities = 0, archetypes = 0, segments = 0;
+    uint32_t entities = 0, disabled = 0, archetypes = 0, segments = 0;
     size_t valueBytes = 0; // of living components
     size_t blockBytes = 0; // allocated for them
     size_t bookBytes = 0;  // ids, versions, change bits, entity table, hierarchy, query caches
+    std::vector<ArchetypeStatistics> perArchetype; // in the order they were made
 };
+// A table: totals, then a line per archetype; in KiB.
+[[nodiscard]] std::string toString(const WorldStatistics& statistics);
+
+class DestroyedLog;
+class ObserverTable;
 
 class World {
 public:
@@ -50,6 +62,13 @@ public:
     void destroyMany(std::span<const Entity> entities);
     [[nodiscard]] bool alive(Entity entity) const { return m_entities.alive(entity); }
     [[nodiscard]] uint32_t count() const { return m_entities.count(); }
+
+    // --- Enabled or not. Queries skip disabled entities (but for WithDisabled); all else works on
+    // them as before, and nothing moves. Per entity: what is below a disabled one stays as it is,
+    // unless the reach says otherwise, and what is attached later is enabled. Enabling counts as a
+    // change of all components.
+    void setEnabled(Entity entity, bool enabled, Reach reach = Reach::entity);
+    [[nodiscard]] bool isEnabled(Entity entity) const;
 
     // --- Components. add overwrites what is there; set needs it there; remove ignores absence.
     template <class... Ts>
@@ -107,17 +126,23 @@ public:
     [[nodiscard]] uint64_t version() const { return m_stamp.version; }
     void advance() { m_stamp = {m_stamp.version + 1, m_stamp.version}; }
 
-    // --- Looking inside.
-    // One line per component: name, bytes, version, words as numbers.
+    // --- Looking inside. What is called and shown how is up to debug_hooks.h as well.
+    // "12#3 'ball'"; the name only if it has one. Any entity may be asked about.
+    [[nodiscard]] std::string describe(Entity entity) const;
+    // What it is, its place in the hierarchy, and one line per component: name, bytes, version,
+    // value.
     [[nodiscard]] std::string dump(Entity entity) const;
     [[nodiscard]] WorldStatistics statistics() const;
     [[nodiscard]] ComponentMask components(Entity entity) const;
+    // Messages about a stale Entity then tell what it was. On in debug builds.
+    void rememberDestroyed(bool remember);
     void trim(); // gives back memory that holds no rows; else it is kept for the next ones
 
 private:
     friend class SystemContext;
     friend class Schedule;
     friend class CommandPlayback;
+    friend class ObserverTable;
 
     [[nodiscard]] Place place(Entity entity) const
     {
@@ -127,11 +152,14 @@ private:
     }
     [[noreturn]] void failStale(Entity entity) const;
     [[noreturn]] void failMissing(Entity entity, ComponentId id) const;
-    [[noreturn]] void failStructural() const;
+    [[noreturn]] void failStructural(Entity entity) const;
     [[noreturn]] static void failInSystem();
     [[noreturn]] static void failNoSingleton(ComponentId id);
-    void assertStructural() const;
+    void assertStructural(Entity entity = {}) const;
     void assertOutsideSystems() const;
+    [[nodiscard]] std::string ofEntity(Entity entity) const; // " of 12#3 'ball'"; null: ""
+    [[nodiscard]] static std::string currentSystem();        // of this thread: "system 'move'"
+    [[nodiscard]] std::string nameOf(Entity entity) const;   // empty: none
 
     [[nodiscard]] Archetype& archetypeOf(const ComponentMask& mask);
     [[nodiscard]] Archetype& archetypeOf(const ComponentSet& set)
@@ -171,6 +199,47 @@ private:
     void closeGap(Archetype& archetype, uint32_t row);
     void destroyLeaf(Entity entity);
     void checkParent(Entity child, Entity parent);
+    void destroyTree(Entity entity);
+    void destroyListed(std::span<const Entity> entities);
+    void destroyWatched(std::span<const Entity> entities);
+    [[nodiscard]] bool isWatched() const // destroy() has more to do than to destroy
+    {
+        return m_observers != nullptr || m_destroyed != nullptr;
+    }
+    // For observers; the entities lie in one archetype. `given` components came, or were set if
+    // they were there `before`; `removed` ones are about to go.
+    void tellGiven(std::span<const Entity> entities, const ComponentMask& before,
+                   const ComponentMask& given);
+    void tellRemoved(std::span<const Entity> entities, const ComponentMask& removed);
+    void settleObservers();
+    [[nodiscard]] bool isTelling() const;
+    // Around an operation made of others: observers' commands wait until finish(). Where an
+    // exception passes, they wait for the next operation.
+    class ObserversWait {
+    public:
+        explicit ObserversWait(World& world) : m_table(world.m_observers)
+        {
+            if (m_table != nullptr) [[unlikely]]
+                enter();
+        }
+        ~ObserversWait()
+        {
+            if (m_table != nullptr) [[unlikely]]
+                leave(false);
+        }
+        ObserversWait(const ObserversWait&) = delete;
+        ObserversWait& operator=(const ObserversWait&) = delete;
+        void finish()
+        {
+            if (m_table != nullptr) [[unlikely]]
+                leave(true);
+        }
+
+    private:
+        void enter();
+        void leave(bool settle);
+        ObserverTable* m_table; // null: nobody, or left
+    };
     void attachOrFail(Entity child, Entity parent);
     template <class... Arguments>
     static void fillAll(Archetype& archetype, uint32_t row, uint32_t count,
@@ -195,6 +264,8 @@ private:
     std::vector<uint32_t> m_leaving;    // scratch of moveRun()
     Stamp m_stamp{1, 0};
     bool m_inSystems = false;
+    ObserverTable* m_observers = nullptr; // owned; null before the first observer
+    DestroyedLog* m_destroyed = nullptr;  // owned; null: not wanted
 
     mutable uint32_t m_iterating = 0; // debug builds; several threads count
 };

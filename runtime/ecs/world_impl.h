@@ -6,11 +6,12 @@
 
 namespace penumbra::ecs {
 
-inline void World::assertStructural() const
+inline void World::assertStructural([[maybe_unused]] Entity entity) const
 {
 #ifndef NDEBUG
-    if (m_inSystems || __atomic_load_n(&m_iterating, __ATOMIC_RELAXED) != 0) [[unlikely]]
-        failStructural();
+    if (m_inSystems || __atomic_load_n(&m_iterating, __ATOMIC_RELAXED) != 0 || isTelling())
+        [[unlikely]]
+        failStructural(entity);
 #endif
 }
 
@@ -114,13 +115,16 @@ Entity World::create(Ts&&... values)
     constexpr bool kHasParent = (std::is_same_v<std::remove_cvref_t<Ts>, Parent> || ...);
     if constexpr (kHasParent)
         checkParent({}, parentIn(values...));
-    const NewRow made = createIn(componentSet<std::remove_cvref_t<Ts>...>());
+    const ComponentSet& set = componentSet<std::remove_cvref_t<Ts>...>();
+    const NewRow made = createIn(set);
     if constexpr (sizeof...(Ts) > 0) {
         const Archetype::RowPlace row = made.archetype->rowPlace(made.row);
         (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).store(row, false), ...);
     }
     if constexpr (kHasParent)
         attachOrFail(made.entity, parentIn(values...));
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&made.entity, 1}, {}, set.mask);
     return made.entity;
 }
 
@@ -136,6 +140,8 @@ void World::createMany(std::span<Entity> out, const Arguments&... arguments)
     if constexpr ((std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> || ...))
         for (const Entity entity : out)
             attachOrFail(entity, value<Parent>(entity).entity);
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven(out, {}, archetype.mask());
 }
 
 // Values for the rows, which are within room and hold none. If a copy throws, none is left.
@@ -178,7 +184,8 @@ void World::add(Entity entity, Ts&&... values)
     if constexpr (kHasParent)
         checkParent(entity, parentIn(values...));
     [[maybe_unused]] const ComponentMask before = place(entity).archetype->mask();
-    const Place place = addSet(entity, componentSet<std::remove_cvref_t<Ts>...>());
+    const ComponentSet& set = componentSet<std::remove_cvref_t<Ts>...>();
+    const Place place = addSet(entity, set);
     if constexpr (sizeof...(Ts) > 0) {
         const Archetype::RowPlace row = place.archetype->rowPlace(place.row);
         (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).store(
@@ -188,6 +195,8 @@ void World::add(Entity entity, Ts&&... values)
     }
     if constexpr (kHasParent)
         attachOrFail(entity, parentIn(values...));
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&entity, 1}, before, set.mask);
 }
 
 template <class... Arguments>
@@ -198,6 +207,7 @@ void World::addMany(std::span<const Entity> entities, const Arguments&... argume
     assertStructural();
     (static_cast<void>(BulkArgument<Arguments>::values(arguments, entities.size())), ...);
     const ComponentSet& set = componentSet<typename BulkArgument<Arguments>::Component...>();
+    ObserversWait observers(*this);
     for (size_t done = 0; done < entities.size();) {
         const size_t length = runLength(entities.subspan(done));
         const auto run = entities.subspan(done, length);
@@ -211,12 +221,15 @@ void World::addMany(std::span<const Entity> entities, const Arguments&... argume
                      static_cast<uint32_t>(length), BulkArgument<Arguments>::at(arguments, done),
                      BulkArgument<Arguments>::kStride),
              ...);
+            if (m_observers != nullptr) [[unlikely]]
+                tellGiven(run, from.mask(), set.mask);
         } else {
             for (size_t i = 0; i < length; ++i)
                 add(run[i], BulkArgument<Arguments>::one(arguments, done + i)...);
         }
         done += length;
     }
+    observers.finish();
 }
 
 template <class... Ts>
@@ -224,13 +237,19 @@ void World::removeMany(std::span<const Entity> entities)
 {
     static_assert((!std::is_same_v<Ts, Parent> && ...), "parents go one by one: clearParent()");
     assertStructural();
+    const ComponentSet& set = componentSet<Ts...>();
+    ObserversWait observers(*this);
     for (size_t done = 0; done < entities.size();) {
         const auto run = entities.subspan(done, runLength(entities.subspan(done)));
         Archetype& from = *place(run[0]).archetype;
-        if (Archetype& to = withoutSet(from, componentSet<Ts...>()); &to != &from)
+        if (Archetype& to = withoutSet(from, set); &to != &from) {
+            if (m_observers != nullptr) [[unlikely]]
+                tellRemoved(run, set.mask);
             moveRun(run, from, to);
+        }
         done += run.size();
     }
+    observers.finish();
 }
 
 template <class T>
@@ -238,6 +257,10 @@ void World::set(Entity entity, const T& value)
 {
     assertOutsideSystems();
     setStamped(entity, value, m_stamp);
+    if (m_observers != nullptr) [[unlikely]] {
+        const ComponentMask& mask = componentSet<T>().mask;
+        tellGiven({&entity, 1}, mask, mask);
+    }
 }
 
 template <class T>
