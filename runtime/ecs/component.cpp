@@ -26,15 +26,15 @@ Registry& registry()
     return instance;
 }
 
+} // namespace
+
 uint64_t hashName(std::string_view name)
 {
-    uint64_t hash = 0xcbf29ce484222325u; // FNV-1a, 64 bits
+    uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : name)
         hash = (hash ^ static_cast<uint8_t>(c)) * 0x100000001b3u;
     return hash;
 }
-
-} // namespace
 
 std::string toString(Entity entity)
 {

@@ -63,6 +63,8 @@ public:
     }
 
 private:
+    friend class WorldAccess;
+
     std::vector<EntityRecord> m_records; // [index]
     std::vector<uint32_t> m_free;
     uint32_t m_count = 0;

@@ -110,6 +110,7 @@ private:
     friend class SystemContext;
     friend class Schedule;
     friend class CommandPlayback;
+    friend class WorldAccess;
 
     struct Place {
         Archetype* archetype;
