@@ -4,6 +4,7 @@
 #include "runtime/ecs/entity_table.h"
 
 #include <atomic>
+#include <fmt/format.h>
 #include <mutex>
 #include <unordered_map>
 
@@ -26,15 +27,15 @@ Registry& registry()
     return instance;
 }
 
+} // namespace
+
 uint64_t hashName(std::string_view name)
 {
-    uint64_t hash = 0xcbf29ce484222325u; // FNV-1a, 64 bits
+    uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : name)
         hash = (hash ^ static_cast<uint8_t>(c)) * 0x100000001b3u;
     return hash;
 }
-
-} // namespace
 
 // [ComponentId], for debug/gdb_printers.py: a name that debuggers find.
 extern const ComponentInfo* debuggedComponents;

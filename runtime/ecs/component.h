@@ -12,19 +12,21 @@
 //
 // Components should be trivially copyable: they move by memcpy. One that is not (it owns memory,
 // say) works as well if its move constructor does not throw: it is constructed, moved and destroyed
-// properly, has no lanes, and is never written past its type (dumps and copies of bytes skip it).
-// For a type you do not own, specialise ComponentTraits. If it holds entities, list them in
-// kEntityFields, so that deferred creation (and later prefabs and files) can remap them.
+// properly, has no lanes, and is never written past its type (dumps, prefabs and scene files skip
+// it; snapshots want saveBytes() and loadBytes()).
+// For a type you do not own, specialise ComponentTraits. Describe the members in kFields (field.h)
+// to have the component in scene files and editors. If it holds entities and has no kFields, list
+// them in kEntityFields, so that deferred creation, prefabs and files can remap them.
 // Identity is the hash of the name, so one type seen from two shared libraries is one component.
 #pragma once
 
 #include "runtime/ecs/component_mask.h"
-#include "runtime/ecs/entity.h"
+#include "runtime/ecs/field.h"
 
+#include <cstring>
 #include <new>
-#include <span>
-#include <string_view>
-#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace penumbra::ecs {
 
@@ -34,9 +36,9 @@ struct ComponentTraits {
     static constexpr bool kRowChanges = requires { requires T::kRowChanges; };
 };
 
-// Byte offsets of the Entity fields of T; specialise next to T.
+// Byte offsets of the Entity fields of T: from kFields, or specialised next to T.
 template <class T>
-inline constexpr std::array<uint32_t, 0> kEntityFields{};
+inline constexpr auto kEntityFields = entityFieldsOf<T>();
 
 template <class T>
 struct LaneOf {
@@ -81,10 +83,23 @@ struct ComponentInfo {
     uint32_t laneAlignment = 1; // at most kMaxAlignment
     bool rowChanges = false;
     std::span<const uint32_t> entityFields;
-    void (*construct)(void* value) = nullptr; // writes T{}
-    const ComponentLife* life = nullptr;      // null: trivially copyable
+    void (*construct)(void* value) = nullptr;                      // writes T{}
+    const ComponentLife* life = nullptr;                           // null: trivially copyable
+    [[nodiscard]] bool isPlain() const { return life == nullptr; } // its bytes are its value
+
+    // For files, prefabs and snapshots.
+    std::span<const Field> fields;
+    uint32_t version = 1; // T::kVersion: a file's newer component is kept aside, not read
+    void (*clearPadding)(void* value) = nullptr; // null: no padding, or the compiler cannot tell
+    // Of components whose bytes do not say it all; both or none. Found as free functions
+    //   void saveBytes(const T&, std::vector<std::byte>& out);     // appends
+    //   bool loadBytes(T& value, std::span<const std::byte> bytes); // value is T{}; false: damaged
+    void (*save)(const void* value, std::vector<std::byte>& out) = nullptr;
+    bool (*load)(void* value, std::span<const std::byte> bytes) = nullptr;
 };
 inline constexpr uint32_t kMaxAlignment = 64; // one cache line
+
+[[nodiscard]] uint64_t hashName(std::string_view name); // FNV-1a, 64 bits
 
 // Thread-safe; the same name gives the same id, and must come with the same layout.
 ComponentId registerComponent(const ComponentInfo& info);
@@ -94,6 +109,42 @@ ComponentId registerComponent(const ComponentInfo& info);
 [[nodiscard]] uint32_t componentCount();
 // "Position, Velocity"
 [[nodiscard]] std::string toString(const ComponentMask& mask);
+
+// Adds what T offers for files: kFields, kVersion, saveBytes() and loadBytes().
+template <class T>
+ComponentInfo describe(ComponentInfo info)
+{
+    info.fields = kFields<T>;
+    if constexpr (requires { T::kVersion; })
+        info.version = T::kVersion;
+    if constexpr (requires(T & value, std::vector<std::byte> & out) {
+                      saveBytes(std::as_const(value), out);
+                      loadBytes(value, std::span<const std::byte>(out));
+                  }) {
+        static_assert(kLaneCount<T> == 1, "a value in lanes has no address to give to saveBytes()");
+        info.save = [](const void* value, std::vector<std::byte>& out) {
+            saveBytes(*static_cast<const T*>(value), out);
+        };
+        info.load = [](void* value, std::span<const std::byte> bytes) -> bool {
+            return loadBytes(*static_cast<T*>(value), bytes);
+        };
+    }
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_clear_padding)
+    if constexpr (std::is_trivially_copyable_v<T> && !kIsTag<T>) {
+        alignas(T) std::byte ones[sizeof(T)];
+        std::memset(ones, 0xff, sizeof(T));
+        __builtin_clear_padding(reinterpret_cast<T*>(ones));
+        for (const std::byte byte : ones)
+            if (byte != std::byte{0xff})
+                info.clearPadding = [](void* value) {
+                    __builtin_clear_padding(static_cast<T*>(value));
+                };
+    }
+#endif
+#endif
+    return info;
+}
 
 // Values from every step-th of `from`. If a copy throws, none is left.
 template <class T>
@@ -160,7 +211,7 @@ template <class T>
     static_assert(std::is_default_constructible_v<T>, "components have a default value");
     static_assert(sizeof(T) % sizeof(Lane<T>) == 0, "lanes fill the component");
     static_assert(alignof(T) <= kMaxAlignment);
-    const ComponentId id = registerComponent({
+    const ComponentId id = registerComponent(describe<T>({
         .name = ComponentTraits<T>::kName,
         .bytes = kIsTag<T> ? 0 : static_cast<uint32_t>(sizeof(T)),
         .laneCount = kLaneCount<T>,
@@ -169,7 +220,7 @@ template <class T>
         .entityFields = kEntityFields<T>,
         .construct = [](void* value) { new (value) T{}; },
         .life = componentLife<T>(),
-    });
+    }));
     __atomic_store_n(&kKnownId<T>, id + 1u, __ATOMIC_RELAXED);
     return id;
 }
@@ -179,6 +230,13 @@ ComponentId componentId()
 {
     const uint32_t known = __atomic_load_n(&kKnownId<T>, __ATOMIC_RELAXED);
     return known != 0 ? static_cast<ComponentId>(known - 1) : findId<T>();
+}
+
+// Makes components known by name before any code uses them: a scene file names them first.
+template <class... Ts>
+void registerComponents()
+{
+    (static_cast<void>(componentId<Ts>()), ...);
 }
 
 // A set of types that code names together: create<Ts...>, add<Ts...>. The slot is dense, so that

@@ -1,5 +1,5 @@
 // DebugHooks: what other parts teach the ECS for its messages and World::dump(). Process-wide; set
-// at start-up, before worlds are in use. A null pointer: not known.
+// at start-up, before worlds are in use.
 #pragma once
 
 #include "runtime/ecs/component.h"
@@ -8,10 +8,12 @@
 namespace penumbra::ecs {
 
 struct DebugHooks {
-    // The component that holds an entity's name, and how to read it; see nameEntitiesBy().
+    // The component that holds an entity's name, and how to read it; see nameEntitiesBy(). Null:
+    // Name (name.h).
     uint32_t nameComponent = kNone;
     std::string (*name)(const void* value) = nullptr;
-    // A value on one line, field by field. Empty text: World::dump() shows words.
+    // A value on one line, field by field; at first fieldsText() (reflection.h). Empty text, or
+    // null: World::dump() shows words.
     std::string (*value)(ComponentId component, const void* value) = nullptr;
 };
 

@@ -20,7 +20,8 @@ void DisabledRows::makeRoom(uint32_t rows, uint32_t segmentShift)
 {
     if (const size_t words = (size_t{rows} + 63) / 64; words > m_bits.size())
         m_bits.resize(words);
-    if (const size_t segments = ((size_t{rows} - 1) >> segmentShift) + 1; segments > m_counts.size())
+    if (const size_t segments = ((size_t{rows} - 1) >> segmentShift) + 1;
+        segments > m_counts.size())
         m_counts.resize(segments);
 }
 

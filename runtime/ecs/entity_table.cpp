@@ -64,6 +64,33 @@ void EntityTable::removePage(uint32_t page)
     m_freePages.push_back(page);
 }
 
+std::vector<uint32_t> EntityTable::freeIndices() const
+{
+    std::vector<uint32_t> free(m_freeCount);
+    uint32_t next = m_firstFree;
+    for (size_t i = free.size(); i-- > 0; next = m_records[next].place & ~kFree)
+        free[i] = next;
+    return free;
+}
+
+void EntityTable::restore(std::span<const uint32_t> generations, std::span<const uint32_t> free,
+                          uint32_t count)
+{
+    PENUMBRA_ASSERT(generations.size() < kFree, "{} entities do not fit", generations.size());
+    EntityTable table;
+    table.m_records.reserve(generations.size());
+    for (const uint32_t generation : generations)
+        table.m_records.push_back({generation, kFree});
+    for (const uint32_t index : free) {
+        table.m_records[index].place = kFree | table.m_firstFree;
+        table.m_firstFree = index;
+    }
+    table.m_freeCount = static_cast<uint32_t>(free.size());
+    table.m_count = count;
+    table.m_moves = m_moves + 1;
+    *this = std::move(table);
+}
+
 size_t EntityTable::bytes() const
 {
     return m_records.capacity() * sizeof(Record) + m_pages.capacity() * sizeof(Page) +

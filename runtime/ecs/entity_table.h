@@ -85,6 +85,12 @@ public:
     uint32_t addPage(Archetype* archetype, uint32_t firstRow);
     void removePage(uint32_t page);
 
+    // For snapshots: the free indices, next one last; and a table that has all those indices, the
+    // others without a place yet. Places remembered before do not hold.
+    [[nodiscard]] std::vector<uint32_t> freeIndices() const;
+    void restore(std::span<const uint32_t> generations, std::span<const uint32_t> free,
+                 uint32_t count);
+
     [[nodiscard]] uint32_t generation(uint32_t index) const { return m_records[index].generation; }
     [[nodiscard]] uint32_t count() const { return m_count; }
     [[nodiscard]] uint32_t indexCount() const { return static_cast<uint32_t>(m_records.size()); }

@@ -25,7 +25,7 @@ struct Parent {
 };
 static_assert(sizeof(Parent) == 8 && std::is_trivially_copyable_v<Parent>);
 template <>
-inline constexpr std::array<uint32_t, 1> kEntityFields<Parent>{offsetof(Parent, entity)};
+inline constexpr auto kFields<Parent> = fields(PENUMBRA_FIELD(Parent, entity));
 
 // Whom an operation is for: one entity, or it and everything below it at that moment.
 enum class Reach : uint8_t { entity, subtree };
@@ -66,6 +66,7 @@ public:
 private:
     friend class World;
     friend class CommandPlayback;
+    friend class WorldAccess;
 
     // False, and nothing changed, if it would close a cycle.
     [[nodiscard]] bool attach(Entity child, Entity parent);

@@ -7,12 +7,13 @@
 //   }); // until `watch` goes
 //
 // What is told:
-//   onAdd     the component came, with its value: create, add, a command buffer's merged commands
-//   onSet     a value was given over an old one: World::set, add, setParent, setSingleton and the
-//             same commands. Not writes through references, queries or SystemContext: they may be
-//             on any thread; Changed<> finds those.
+//   onAdd     the component came, with its value: create, add, a command buffer's merged commands,
+//             prefabs, scene files
+//   onSet     a value was given over an old one: World::set, add, setParent, setSingleton, the same
+//             commands, and writeComponent(). Not writes through references, queries or
+//             SystemContext: they may be on any thread; Changed<> finds those.
 //   onRemove  the component is about to go, its value still there: remove, destroy (`ending`), with
-//             everything below. Not the end of the World itself.
+//             everything below. Not the end of the World itself, nor restoreSnapshot().
 // A command buffer tells what differs between before and after: first what goes, before anything
 // moves; once all is moved, written and attached, what came, then what was set; then its destroys.
 //

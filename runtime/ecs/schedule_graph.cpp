@@ -4,6 +4,7 @@
 #include "runtime/assert.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace penumbra::ecs {
 

@@ -143,6 +143,7 @@ private:
     friend class Schedule;
     friend class CommandPlayback;
     friend class ObserverTable;
+    friend class WorldAccess;
 
     [[nodiscard]] Place place(Entity entity) const
     {

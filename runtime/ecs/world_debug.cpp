@@ -2,6 +2,8 @@
 #include "runtime/assert.h"
 #include "runtime/ecs/debug_hooks.h"
 #include "runtime/ecs/destroyed_log.h"
+#include "runtime/ecs/name.h"
+#include "runtime/ecs/reflection.h"
 #include "runtime/ecs/running_system.h"
 #include "runtime/ecs/world.h"
 
@@ -11,7 +13,7 @@ namespace penumbra::ecs {
 
 DebugHooks& debugHooks()
 {
-    static DebugHooks hooks;
+    static DebugHooks hooks{.value = fieldsText};
     return hooks;
 }
 
@@ -19,11 +21,16 @@ DebugHooks& debugHooks()
 std::string World::nameOf(Entity entity) const
 {
     const DebugHooks& hooks = debugHooks();
-    if (hooks.name == nullptr || !alive(entity))
+    const uint32_t id = hooks.name != nullptr ? hooks.nameComponent : findComponent(Name::kName);
+    if (id == kNone || !alive(entity))
         return {};
     const Place at = place(entity);
-    const int32_t column = at.archetype->columnOf(static_cast<ComponentId>(hooks.nameComponent));
-    return column < 0 ? std::string() : hooks.name(at.archetype->at(column, at.row));
+    const int32_t column = at.archetype->columnOf(static_cast<ComponentId>(id));
+    if (column < 0 || (hooks.name == nullptr && componentInfo(id).bytes != sizeof(Name)))
+        return {};
+    const void* const value = at.archetype->at(column, at.row);
+    return hooks.name != nullptr ? hooks.name(value)
+                                 : std::string(static_cast<const Name*>(value)->text());
 }
 
 std::string World::describe(Entity entity) const

@@ -2,7 +2,7 @@
 #include "runtime/ecs/debug_hooks.h"
 #include "runtime/ecs/observers.h"
 #include "runtime/ecs/schedule.h"
-#include "tests/runtime/ecs/components.h"
+#include "tests/runtime/ecs/described.h"
 
 #include <gtest/gtest.h>
 
@@ -18,12 +18,16 @@ struct Label { // the name of an entity
 struct DebugTest : testing::Test {
     DebugTest()
     {
+        debugHooks() = {};
         nameEntitiesBy<Label>([](const Label& label) { return std::string_view(label.text); });
         world.rememberDestroyed(true);
     }
-    ~DebugTest() override { debugHooks() = {}; }
+    ~DebugTest() override { debugHooks() = m_before; }
 
     World world;
+
+private:
+    DebugHooks m_before = debugHooks();
 };
 
 } // namespace
@@ -149,5 +153,23 @@ TEST_F(DebugTest, StructuralChangesTellWhereAndOfWhat)
                 "structural change of 0#1 'ball' in an observer");
 }
 #endif
+
+// Without further ado: Name names, and described components show their fields.
+TEST(Debug, NamesAndFieldsAreShownByThemselves)
+{
+    World world;
+    const Entity target = world.create(Name("target"));
+    Everything value;
+    value.target = target;
+    const Entity entity = world.create(Name("all"), value, Position{1, 2, 3});
+    EXPECT_EQ(world.describe(entity), "1#1 'all'");
+    const std::string text = world.dump(entity);
+    EXPECT_NE(
+        text.find("power 40 W, exact 0.1, offset -3, count 7, on true, shape square, colour (0 "
+                  "0 0), rotation (0 0 0 1), target 0#1, label 'abc', mesh 4294967295\n"),
+        std::string::npos)
+        << text;
+    EXPECT_NE(text.find("test.Position (12 bytes, version 1): 1 2 3\n"), std::string::npos) << text;
+}
 
 } // namespace penumbra::ecs

@@ -261,4 +261,60 @@ TEST(Enable, FlagsStayWithTheirEntities)
     }
 }
 
+TEST(Enable, EachDownSkips)
+{
+    World world;
+    std::vector<Entity> chain;
+    for (uint32_t i = 0; i < 200; ++i)
+        chain.push_back(i == 0 ? world.create(Health{1}, Position{})
+                               : world.create(Health{1}, Position{}, Parent{chain[i - 1]}));
+    for (const size_t i : {0, 5, 6, 199})
+        world.setEnabled(chain[i], false);
+    world.advance();
+    const uint64_t before = world.version() - 1;
+    const auto walk = [&](auto query) {
+        uint32_t rows = 0;
+        query.eachDown(world.hierarchy(), [&](Health& health, const Health* parent) {
+            health.points = parent != nullptr ? parent->points + 1 : 10;
+            ++rows;
+        });
+        return rows;
+    };
+    EXPECT_EQ(walk(world.query<Health>()), 196u);
+    EXPECT_EQ(world.get<const Health>(chain[0]).points, 1u);
+    EXPECT_EQ(world.get<const Health>(chain[1]).points, 2u); // the value that its parent has
+    EXPECT_EQ(world.get<const Health>(chain[4]).points, 5u);
+    EXPECT_EQ(world.get<const Health>(chain[7]).points, 2u);
+    uint32_t changed = 0; // no mark on what was skipped
+    world.query<const Health, Changed<Health>, WithDisabled>().since(before).each(
+        [&](const Health&) { ++changed; });
+    EXPECT_EQ(changed, 196u);
+    EXPECT_EQ(walk(world.query<Health, WithDisabled>()), 200u);
+    EXPECT_EQ(world.get<const Health>(chain[199]).points, 209u);
+}
+
+// Moves of many at once take it along.
+TEST(Enable, BulkMovesKeepIt)
+{
+    World world;
+    std::vector<Entity> entities(1000);
+    world.createMany(entities, Position{});
+    for (uint32_t i = 0; i < 1000; i += 3)
+        world.setEnabled(entities[i], false);
+    std::vector<Entity> some;
+    for (uint32_t i = 0; i < 1000; i += 2)
+        some.push_back(entities[i]);
+    world.addMany(some, Health{1});
+    world.removeMany<Position>(std::span(some).first(100));
+    world.destroyMany(std::span(some).last(100));
+    uint32_t enabled = 0;
+    for (uint32_t i = 0; i < 1000; ++i) {
+        if (!world.alive(entities[i]))
+            continue;
+        EXPECT_EQ(world.isEnabled(entities[i]), i % 3 != 0);
+        enabled += i % 3 != 0;
+    }
+    EXPECT_EQ(world.query<>().count(), enabled);
+}
+
 } // namespace penumbra::ecs

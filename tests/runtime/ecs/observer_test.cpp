@@ -1,4 +1,7 @@
 #include "runtime/ecs/observers.h"
+
+#include "runtime/ecs/prefab.h"
+#include "runtime/ecs/reflection.h"
 #include "tests/runtime/ecs/components.h"
 
 #include <gtest/gtest.h>
@@ -343,6 +346,78 @@ TEST_F(ObserverTest, CountsAgreeWithTheWorld)
         ASSERT_EQ(healthy, healthyNow) << round;
         ASSERT_EQ(frozen, frozenNow) << round;
     }
+}
+
+// Run by run of one archetype, as the storage takes them.
+TEST_F(ObserverTest, TellsOfBulkChanges)
+{
+    std::vector<Entity> entities(6);
+    world.createMany(std::span(entities).first(4), Position{});
+    world.createMany(std::span(entities).last(2), Position{}, Health{1});
+    watch<Health>();
+    watch<Frozen>();
+    const std::vector<Entity> plain(entities.begin(), entities.begin() + 4);
+    const std::vector<Entity> healthy(entities.begin() + 4, entities.end());
+    world.addMany(entities, Health{7}, Frozen{});
+    EXPECT_EQ(take(), (Calls{{'+', "Health", plain},
+                             {'+', "Frozen", plain},
+                             {'+', "Frozen", healthy},
+                             {'=', "Health", healthy}}));
+    world.addMany(plain, Health{8}); // all have it
+    EXPECT_EQ(take().size(), 4u);
+    world.removeMany<Frozen, Wide>(entities);
+    EXPECT_EQ(take(), (Calls{{'-', "Frozen", entities}}));
+    world.removeMany<Frozen>(entities);
+    EXPECT_EQ(take(), Calls{});
+    world.destroyMany(entities);
+    EXPECT_EQ(take(), (Calls{{'!', "Health", entities}}));
+}
+
+// What an observer does to entities that come later in the list waits until all are done.
+TEST_F(ObserverTest, BulkChangesAreWholeBeforeObserversActs)
+{
+    std::vector<Entity> entities(3);
+    world.createMany(std::span(entities).first(1), Position{});
+    world.createMany(std::span(entities).last(2), Velocity{}); // another run
+    const Observer doomed = onAdd<Health>(world, [&](const Observation& seen) {
+        seen.commands.destroy(entities[2]);
+        seen.commands.add(entities[1], Frozen{});
+    });
+    const Observer back = onRemove<Health>(world, [&](const Observation& seen) {
+        if (!seen.ending)
+            seen.commands.destroy(entities[1]);
+    });
+    world.addMany(entities, Health{1});
+    EXPECT_FALSE(world.alive(entities[2]));
+    EXPECT_TRUE(world.has<Frozen>(entities[1]));
+    world.removeMany<Health>(std::span(entities).first(2));
+    EXPECT_FALSE(world.has<Health>(entities[0]));
+    EXPECT_FALSE(world.alive(entities[1]));
+}
+
+TEST_F(ObserverTest, TellsOfPrefabsAndComponentsById)
+{
+    watch<Health>();
+    Prefab prefab;
+    const uint32_t body = prefab.addPart();
+    prefab.set(body, Health{1});
+    prefab.set(prefab.addPart(body), Health{2});
+    const std::vector<Entity> made = instantiate(world, prefab, 2);
+    // Neighbours with the same components come together; Parent tells the parts apart.
+    EXPECT_EQ(take(), (Calls{{'+', "Health", {made[0]}},
+                             {'+', "Health", {made[1]}},
+                             {'+', "Health", {made[2]}},
+                             {'+', "Health", {made[3]}}}));
+    const Entity entity = world.create();
+    const Health health{3};
+    addComponent(world, entity, componentId<Health>());
+    addComponent(world, entity, componentId<Health>(), &health);
+    writeComponent(world, entity, componentId<Health>(), &health);
+    removeComponent(world, entity, componentId<Health>());
+    EXPECT_EQ(take(), (Calls{{'+', "Health", {entity}},
+                             {'=', "Health", {entity}},
+                             {'=', "Health", {entity}},
+                             {'-', "Health", {entity}}}));
 }
 
 } // namespace penumbra::ecs

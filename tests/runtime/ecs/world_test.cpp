@@ -157,7 +157,7 @@ TEST(World, TellsWhatItHolds)
     EXPECT_NE(text.find("entity 1#1"), std::string::npos) << text;
     EXPECT_NE(text.find("test.Position (12 bytes, version 1): 1.5 0 0"), std::string::npos) << text;
     EXPECT_NE(text.find("test.Frozen (tag)"), std::string::npos) << text;
-    EXPECT_NE(text.find("): 0#1"), std::string::npos) << text;
+    EXPECT_NE(text.find("): entity 0#1"), std::string::npos) << text;
     EXPECT_NE(world.dump(parent).find("child 1#1"), std::string::npos);
 
     const WorldStatistics statistics = world.statistics();
