@@ -169,4 +169,4 @@ private:
 
 } // namespace penumbra::ecs
 
-#include "runtime/ecs/query_impl.h"
+#include "runtime/ecs/query_walk.h"

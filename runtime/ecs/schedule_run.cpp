@@ -1,6 +1,7 @@
 // Schedule::run(): phases, task graph, versions, and the sync point.
 #include "runtime/ecs/running_system.h"
 #include "runtime/ecs/schedule_node.h"
+#include "runtime/ecs/thread_order.h"
 
 #include <chrono>
 #include <tbb/task_arena.h>
@@ -41,11 +42,14 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
         return;
     }
 
+    ThreadOrder begin, end; // between systems, `waiting` tells
     tbb::task_group group;
     const std::function<void(uint32_t)> launch = [&](uint32_t index) {
         group.run([&, index] {
+            begin.acquire();
             Node& node = *m_systems[index];
             runSystem(node, base);
+            end.release();
             for (const uint32_t next : node.next)
                 if (m_systems[next]->waiting.fetch_sub(1, std::memory_order_acq_rel) == 1)
                     launch(next);
@@ -53,10 +57,12 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
     };
     for (const uint32_t index : phase.systems)
         m_systems[index]->waiting = static_cast<uint32_t>(m_systems[index]->previous.size());
+    begin.release();
     for (const uint32_t index : phase.systems)
         if (m_systems[index]->previous.empty())
             launch(index);
     group.wait();
+    end.acquire();
 }
 
 PlaybackStatistics Schedule::run()

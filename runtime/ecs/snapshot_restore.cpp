@@ -4,6 +4,7 @@
 #include "runtime/ecs/prefab.h"
 #include "runtime/ecs/snapshot.h"
 #include "runtime/ecs/snapshot_format.h"
+#include "runtime/ecs/snapshot_source.h"
 #include "runtime/ecs/world_access.h"
 
 #include <algorithm>
@@ -15,12 +16,10 @@ namespace penumbra::ecs {
 
 namespace {
 
-constexpr std::string_view kDamaged = "the snapshot is damaged";
-
-class SnapshotReader {
+class SnapshotReader : SnapshotSource {
 public:
     SnapshotReader(std::span<const std::byte> bytes, uint64_t version)
-        : m_bytes(bytes), m_stamp{version, version - 1}
+        : SnapshotSource(bytes), m_stamp{version, version - 1}
     {}
 
     // Empty: read.
@@ -35,49 +34,6 @@ public:
     WorldAccess::Contents contents;
 
 private:
-    bool refuse(const std::string& what)
-    {
-        if (m_error.empty())
-            m_error = fmt::format("{}: {}; take it again", kDamaged, what);
-        return false;
-    }
-    bool refuseWith(std::string message)
-    {
-        m_error = std::move(message);
-        return false;
-    }
-
-    std::span<const std::byte> take(size_t bytes)
-    {
-        if (bytes > m_bytes.size()) {
-            refuse("it ends too early");
-            bytes = 0;
-        }
-        const std::span<const std::byte> taken = m_bytes.first(bytes);
-        m_bytes = m_bytes.subspan(bytes);
-        return taken;
-    }
-    template <class T>
-    T get()
-    {
-        T value{};
-        if (const auto bytes = take(sizeof(T)); !bytes.empty())
-            std::memcpy(&value, bytes.data(), sizeof(T));
-        return value;
-    }
-    // A count of things of at least `bytes` each: what does not fit in the rest reads as 0.
-    template <class T = uint32_t>
-    uint32_t getCount(size_t bytes)
-    {
-        const uint32_t count = get<T>();
-        if (count > m_bytes.size() / bytes) {
-            refuse("it ends too early");
-            return 0;
-        }
-        return count;
-    }
-    [[nodiscard]] bool ok() const { return m_error.empty(); }
-
     bool readHead()
     {
         constexpr size_t kLeast = sizeof(kSnapshotMagic) + 2 * sizeof(uint16_t) + sizeof(uint64_t);
@@ -333,9 +289,7 @@ private:
         return ok();
     }
 
-    std::span<const std::byte> m_bytes; // what is left
     Stamp m_stamp;
-    std::string m_error;
     std::vector<ComponentId> m_components; // by place in the snapshot
     ComponentMask m_known;
     std::vector<bool> m_isFree; // [entity index]

@@ -273,4 +273,4 @@ private:
 
 } // namespace penumbra::ecs
 
-#include "runtime/ecs/world_impl.h"
+#include "runtime/ecs/world_values.h"

@@ -36,8 +36,9 @@ std::string World::nameOf(Entity entity) const
 std::string World::describe(Entity entity) const
 {
     std::string name = nameOf(entity);
-    if (const auto* entry = m_destroyed != nullptr ? m_destroyed->find(entity) : nullptr)
-        name = entry->name;
+    if (m_destroyed != nullptr && !alive(entity))
+        if (const DestroyedLog::Entry* entry = m_destroyed->find(entity))
+            name = entry->name;
     return name.empty() ? toString(entity) : fmt::format("{} '{}'", toString(entity), name);
 }
 
