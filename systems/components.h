@@ -3,12 +3,16 @@
 #pragma once
 
 #include "assets/asset_store.h"
+#include "runtime/ecs/component.h"
 
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
 
 namespace penumbra {
+
+template <>
+inline constexpr ecs::FieldType ecs::kFieldType<AssetHandle> = ecs::FieldType::asset;
 
 // Where the entity is: rotation, then uniform scale, then translation, to world space (to the
 // parent's with Parent). Written by: spawn, physics, articulation.  Read by: transforms, gather.
@@ -20,12 +24,20 @@ struct Transform {
     vec4 rotation{0, 0, 0, 1};                // unit quaternion x, y, z, w
 };
 static_assert(sizeof(Transform) == 32 && std::is_trivially_copyable_v<Transform>);
+template <>
+inline constexpr auto ecs::kFields<Transform> =
+    ecs::fields(PENUMBRA_FIELD(Transform, position, .unit = "m"),
+                PENUMBRA_FIELD(Transform, rotation, .type = ecs::FieldType::rotation),
+                PENUMBRA_FIELD(Transform, scale, .min = 1e-6, .max = 1e6));
 
 // The entity is drawn, and its vertices receive light.  Written by: spawn.  Read by: scene build.
 struct MeshInstance {
     static constexpr std::string_view kName = "MeshInstance";
     AssetHandle asset;
 };
+template <>
+inline constexpr auto ecs::kFields<MeshInstance> = ecs::fields(PENUMBRA_FIELD(MeshInstance, asset,
+                                                                              .kind = "mesh"));
 
 // How the surface reflects; without it, the asset's own material.  Written by: spawn, editor.  Read
 // by: gather.
@@ -35,6 +47,11 @@ struct Material {
     float glossFraction = 0; // part of the reflectance in the Phong lobe, 0..1
     float glossExponent = 0; // Phong exponent, >= 0
 };
+template <>
+inline constexpr auto ecs::kFields<Material> =
+    ecs::fields(PENUMBRA_FIELD(Material, albedo, .min = 0, .max = 1),
+                PENUMBRA_FIELD(Material, glossFraction, .min = 0, .max = 1),
+                PENUMBRA_FIELD(Material, glossExponent, .min = 0, .max = 1e4));
 
 // The entity blocks light by the field of this asset, scaled and turned as the entity.  Written by:
 // spawn. Read by: scene build.
@@ -42,21 +59,34 @@ struct ShadowFieldOccluder {
     static constexpr std::string_view kName = "ShadowFieldOccluder";
     AssetHandle asset;
 };
+template <>
+inline constexpr auto ecs::kFields<ShadowFieldOccluder> =
+    ecs::fields(PENUMBRA_FIELD(ShadowFieldOccluder, asset, .kind = "mesh"));
 
 // The entity moves as a rigid body of the physics world.  Written by: spawn.  Read by: physics.
 struct RigidBody {
     static constexpr std::string_view kName = "RigidBody";
     std::uint64_t body = 0; // id in the PhysicsWorld
 };
+template <>
+inline constexpr auto ecs::kFields<RigidBody> = ecs::fields(PENUMBRA_FIELD(RigidBody, body));
 
 // What the picture is seen from.  Written by: spawn, input.  Read by: frame.
 struct Camera {
     static constexpr std::string_view kName = "Camera";
-    vec3 target{0};              // world, metres
-    float distance = 5;          // of the eye from the target, metres
-    float yaw = 0, pitch = 0.4f; // radians; pitch > 0 looks down
-    float fieldOfView = 0.7f;    // vertical, radians
-    float near = 0.05f, far = 100;
+    vec3 target{0};                // world, metres
+    float distance = 5;            // of the eye from the target, metres
+    float yaw = 0, pitch = 0.4f;   // radians; pitch > 0 looks down
+    float fieldOfView = 0.7f;      // vertical, radians
+    float near = 0.05f, far = 100; // metres
 };
+template <>
+inline constexpr auto ecs::kFields<Camera> = ecs::fields(
+    PENUMBRA_FIELD(Camera, target, .unit = "m"),
+    PENUMBRA_FIELD(Camera, distance, .unit = "m", .min = 0, .max = 1e6),
+    PENUMBRA_FIELD(Camera, yaw, .unit = "rad"), PENUMBRA_FIELD(Camera, pitch, .unit = "rad"),
+    PENUMBRA_FIELD(Camera, fieldOfView, .unit = "rad", .min = 0.01, .max = 3.1),
+    PENUMBRA_FIELD(Camera, near, .unit = "m", .min = 1e-6, .max = 1e6),
+    PENUMBRA_FIELD(Camera, far, .unit = "m", .min = 1e-6, .max = 1e9));
 
 } // namespace penumbra

@@ -1,6 +1,6 @@
 #include "runtime/ecs/archetype.h"
 
-#include "runtime/assert.h"
+#include "runtime/ecs/copy_value.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,9 +9,10 @@ namespace penumbra::ecs {
 
 namespace {
 
-// Columns of 2^n rows would all start at one cache set, and a store to one column would look to the
-// processor like a load from the next (4 KiB aliasing). An odd number of lines apart avoids both.
-constexpr uint32_t kColumnGap = 5 * kMaxAlignment;
+// Columns of 2^n rows would all start at one cache set, so they lie apart. Not by little: a load
+// whose address equals that of a store under way in its low 12 bits waits for it (4 KiB aliasing),
+// and the processor works up to 30 vectors ahead. Eight lines keep the next column out of reach.
+constexpr uint32_t kColumnGap = 8 * kMaxAlignment;
 
 // log2 of the rows of rowBytes that fit in `bytes`, at least four, at most as many as 4-byte rows.
 uint32_t rowShift(uint32_t bytes, uint32_t rowBytes)
@@ -19,40 +20,15 @@ uint32_t rowShift(uint32_t bytes, uint32_t rowBytes)
     return std::max<uint32_t>(std::bit_width(bytes / std::max(rowBytes, 4u)), 3) - 1;
 }
 
-// A copy of known size is one or two moves; these sizes are nearly all components and lanes.
-inline void copyValue(std::byte* to, const std::byte* from, size_t bytes)
+std::byte* allocateBlock(size_t bytes)
 {
-    if (bytes == 4)
-        std::memcpy(to, from, 4);
-    else if (bytes == 12)
-        std::memcpy(to, from, 12);
-    else if (bytes == 16)
-        std::memcpy(to, from, 16);
-    else
-        std::memcpy(to, from, bytes);
+    return static_cast<std::byte*>(
+        ::operator new (std::max<size_t>(bytes, 1), std::align_val_t{kMaxAlignment}));
 }
 
-template <size_t kBytes>
-void copyStrided(std::byte* to, const std::byte* from, size_t fromStride, size_t n, size_t bytes)
+void freeBlock(std::byte* block)
 {
-    const size_t size = kBytes > 0 ? kBytes : bytes;
-    for (; n > 0; --n, to += size, from += fromStride)
-        std::memcpy(to, from, size);
-}
-
-// n values of `bytes`, side by side, from places fromStride apart.
-void copyValues(std::byte* to, const std::byte* from, size_t fromStride, size_t n, size_t bytes)
-{
-    switch (bytes) {
-    case 4:
-        return copyStrided<4>(to, from, fromStride, n, bytes);
-    case 12:
-        return copyStrided<12>(to, from, fromStride, n, bytes);
-    case 16:
-        return copyStrided<16>(to, from, fromStride, n, bytes);
-    default:
-        return copyStrided<0>(to, from, fromStride, n, bytes);
-    }
+    ::operator delete (block, std::align_val_t{kMaxAlignment});
 }
 
 } // namespace
@@ -79,73 +55,90 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
         m_columnOf[id] = static_cast<int16_t>(m_columns.size());
         const uint32_t laneBytes = info.bytes / info.laneCount;
         for (uint32_t lane = 0; lane < info.laneCount; ++lane, prefix += laneBytes)
-            m_columns.push_back({id, static_cast<uint16_t>(lane), laneBytes, prefix, 0, -1});
+            m_columns.push_back(
+                {id, static_cast<uint16_t>(lane), laneBytes, prefix, 0, -1, info.life});
+        m_hasLife = m_hasLife || info.life != nullptr;
         if (info.rowChanges) {
             m_columns[m_columnOf[id]].rowChanges = static_cast<int32_t>(m_rowChanges.size());
             m_rowChanges.emplace_back(segmentRows());
         }
     }
-    layOutBlock(std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift));
+    m_columnVersions.resize(m_columns.size());
+    m_blockShift = std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift);
+    m_blockBytes = layOutColumns(m_columns, m_blockShift);
 }
 
-void Archetype::layOutBlock(uint32_t blockShift)
+Archetype::~Archetype()
 {
-    m_blockShift = blockShift;
+    for (uint32_t row = 0; m_hasLife && row < count(); ++row)
+        destroyRow(row);
+    for (std::byte* block : m_blocks)
+        freeBlock(block);
+}
+
+// The columns' offsets in a block of 2^blockShift rows. Returns the block's bytes.
+size_t Archetype::layOutColumns(std::vector<Column>& columns, uint32_t blockShift) const
+{
     const uint32_t gap = blockShift >= m_segmentShift ? kColumnGap : 0; // small blocks stay small
-    for (uint32_t i = 0; i < m_columns.size(); ++i)
-        m_columns[i].offset = (m_columns[i].prefix << blockShift) + i * gap;
-    m_blockBytes = (size_t{m_rowBytes} << blockShift) + m_columns.size() * gap;
-}
-
-Archetype::Block Archetype::allocateBlock() const
-{
-    return Block(static_cast<std::byte*>(
-        ::operator new (std::max<size_t>(m_blockBytes, 1), std::align_val_t{kMaxAlignment})));
+    for (uint32_t i = 0; i < columns.size(); ++i)
+        columns[i].offset = (columns[i].prefix << blockShift) + i * gap;
+    return (size_t{m_rowBytes} << blockShift) + columns.size() * gap;
 }
 
 void Archetype::growFirstBlock()
 {
-    const Block old = m_blocks.empty() ? nullptr : std::move(m_blocks[0]);
-    const std::vector<Column> before = m_columns;
-    const uint32_t rows = std::min(count(), blockRows());
     // x4 up to one segment, then the full block: 1, 4, 16, 128 KiB.
-    layOutBlock(m_blockShift < m_segmentShift ? std::min(m_blockShift + 2, m_segmentShift)
-                                              : m_segmentShift + kBlockSegmentShift);
-    if (!old)
-        return;
-    m_blocks[0] = allocateBlock();
-    for (size_t i = 0; i < m_columns.size(); ++i)
-        std::memcpy(m_blocks[0].get() + m_columns[i].offset, old.get() + before[i].offset,
-                    size_t{rows} * before[i].bytes);
+    const uint32_t blockShift = m_blockShift < m_segmentShift
+                                    ? std::min(m_blockShift + 2, m_segmentShift)
+                                    : m_segmentShift + kBlockSegmentShift;
+    std::vector<Column> columns = m_columns;
+    const size_t bytes = layOutColumns(columns, blockShift);
+    if (!m_blocks.empty()) {
+        std::byte* const block = allocateBlock(bytes);
+        const uint32_t rows = count();
+        for (size_t i = 0; i < columns.size(); ++i) {
+            std::byte* const to = block + columns[i].offset;
+            std::byte* const from = m_blocks[0] + m_columns[i].offset;
+            if (columns[i].life != nullptr)
+                columns[i].life->relocate(to, from, rows);
+            else
+                std::memcpy(to, from, size_t{rows} * columns[i].bytes);
+        }
+        freeBlock(m_blocks[0]);
+        m_blocks[0] = block;
+    }
+    m_columns = std::move(columns);
+    m_blockShift = blockShift;
+    m_blockBytes = bytes;
 }
 
 void Archetype::reserve(uint32_t rows)
 {
+    if (rows <= m_capacity)
+        return;
     const uint32_t full = m_segmentShift + kBlockSegmentShift;
     while (rows > blockRows() && m_blockShift < full)
         growFirstBlock();
-    while (rows > m_blocks.size() << m_blockShift)
-        m_blocks.push_back(allocateBlock());
+    while (rows > m_blocks.size() << m_blockShift) {
+        m_blocks.reserve(m_blocks.size() + 1);
+        m_blocks.push_back(allocateBlock(m_blockBytes));
+    }
     const uint32_t segments = (rows + segmentRows() - 1) >> m_segmentShift;
     if (m_versions.size() < size_t{segments} * m_columns.size()) {
-        m_versions.resize(size_t{segments} * m_columns.size());
         for (RowChanges& changes : m_rowChanges)
             changes.resize(segments);
+        m_versions.resize(size_t{segments} * m_columns.size());
     }
+    reserveSparingly(m_entities, rows);
+    m_capacity = static_cast<uint32_t>(
+        std::min({m_blocks.size() << m_blockShift, size_t{segments} << m_segmentShift,
+                  m_entities.capacity()}));
 }
 
 uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
 {
     const uint32_t row = count();
     const auto added = static_cast<uint32_t>(entities.size());
-    if (added == 1) {
-        const bool newSegment = (row & (segmentRows() - 1)) == 0;
-        if (newSegment || row == m_blocks.size() << m_blockShift)
-            reserve(row + 1);
-        m_entities.push_back(entities[0]);
-        markStructural(row, stamp);
-        return row;
-    }
     reserve(row + added);
     m_entities.insert(m_entities.end(), entities.begin(), entities.end());
     markStructural(row, added, stamp);
@@ -166,94 +159,101 @@ void Archetype::markStructural(uint32_t row, uint32_t added, Stamp stamp)
     m_stampedVersion = stamp.version;
 }
 
-Entity Archetype::removeRow(uint32_t row, Stamp stamp)
+void Archetype::destroyRow(uint32_t row)
+{
+    for (uint32_t column = 0; column < m_columns.size(); ++column)
+        if (const ComponentLife* life = m_columns[column].life)
+            life->destroy(at(column, row), 1);
+}
+
+void Archetype::markAllRows(uint32_t column, Stamp stamp)
+{
+    for (uint32_t segment = 0; segment < segmentCount(); ++segment)
+        markRows(column, segment, 0, std::min(segmentRows(), count() - (segment << m_segmentShift)),
+                 stamp);
+}
+
+Entity Archetype::closeGap(uint32_t row, Stamp stamp)
 {
     const uint32_t last = count() - 1;
     Entity moved;
     if (row != last) {
         moved = m_entities[last];
         m_entities[row] = moved;
-        for (uint32_t column = 0; column < m_columns.size(); ++column)
-            copyValue(at(column, row), at(column, last), m_columns[column].bytes);
+        std::byte* const to = m_blocks[row >> m_blockShift];
+        const std::byte* const from = m_blocks[last >> m_blockShift];
+        const size_t toRow = row & (blockRows() - 1), fromRow = last & (blockRows() - 1);
+        for (const Column& c : m_columns) {
+            if (c.life != nullptr) [[unlikely]]
+                c.life->relocate(to + c.offset + toRow * c.bytes,
+                                 const_cast<std::byte*>(from) + c.offset + fromRow * c.bytes, 1);
+            else
+                copyValue(to + c.offset + toRow * c.bytes, from + c.offset + fromRow * c.bytes,
+                          c.bytes);
+        }
         markStructural(row, stamp);
     }
+    m_disabled.removeRow(row, last, m_segmentShift);
     m_entities.pop_back();
     return moved;
 }
 
-void Archetype::copyRow(uint32_t row, const Archetype& source, uint32_t sourceRow)
+void Archetype::moveRow(uint32_t row, Archetype& source, uint32_t sourceRow)
 {
-    for (uint32_t column = 0; column < m_columns.size(); ++column) {
-        const Column& c = m_columns[column];
-        if (const int32_t from = source.columnOf(c.component); from >= 0)
-            copyValue(at(column, row), source.at(from + c.lane, sourceRow), c.bytes);
-    }
-}
-
-void Archetype::copyRows(uint32_t row, const Archetype& source,
-                         std::span<const uint32_t> sourceRows)
-{
-    for (uint32_t column = 0; column < m_columns.size(); ++column) {
-        const Column& c = m_columns[column];
-        const int32_t from = source.columnOf(c.component);
-        if (from < 0)
+    const RowPlace to = rowPlace(row);
+    const RowPlace from = source.rowPlace(sourceRow);
+    for (const Column& c : source.m_columns) {
+        std::byte* const value = from.block + c.offset + from.row * c.bytes;
+        const int32_t first = to.columnOf[c.component];
+        if (first < 0) {
+            if (c.life != nullptr) [[unlikely]]
+                c.life->destroy(value, 1);
             continue;
-        for (uint32_t i = 0; i < sourceRows.size(); ++i)
-            copyValue(at(column, row + i), source.at(from + c.lane, sourceRows[i]), c.bytes);
-    }
-}
-
-void Archetype::read(ComponentId id, uint32_t row, void* value) const
-{
-    const ComponentInfo& info = componentInfo(id);
-    for (uint32_t lane = 0; info.bytes > 0 && lane < info.laneCount; ++lane) {
-        const uint32_t column = m_columnOf[id] + lane;
-        const uint32_t bytes = m_columns[column].bytes;
-        std::memcpy(static_cast<std::byte*>(value) + size_t{lane} * bytes, at(column, row), bytes);
-    }
-}
-
-void Archetype::write(ComponentId id, uint32_t row, const void* value)
-{
-    const auto* source = static_cast<const std::byte*>(value);
-    for (int32_t column = m_columnOf[id];
-         column >= 0 && column < static_cast<int32_t>(m_columns.size()) &&
-         m_columns[column].component == id;
-         ++column) {
-        copyValue(at(column, row), source, m_columns[column].bytes);
-        source += m_columns[column].bytes;
-    }
-}
-
-void Archetype::fill(ComponentId id, uint32_t row, uint32_t count, const void* values,
-                     size_t stride)
-{
-    const ComponentInfo& info = componentInfo(id);
-    const auto* source = static_cast<const std::byte*>(values);
-    for (const uint32_t end = row + count; info.bytes > 0 && row < end;) {
-        const uint32_t length = std::min(blockRows() - (row & (blockRows() - 1)), end - row);
-        for (uint32_t lane = 0; lane < info.laneCount; ++lane) {
-            const uint32_t column = m_columnOf[id] + lane;
-            const uint32_t bytes = m_columns[column].bytes;
-            copyValues(at(column, row), source + size_t{lane} * bytes, stride, length, bytes);
         }
-        source += length * stride;
-        row += length;
+        std::byte* const place = to.block + to.columns[first + c.lane].offset + to.row * c.bytes;
+        if (c.life != nullptr) [[unlikely]]
+            c.life->relocate(place, value, 1);
+        else
+            copyValue(place, value, c.bytes);
+    }
+}
+
+void Archetype::moveRows(uint32_t row, Archetype& source, std::span<const uint32_t> sourceRows)
+{
+    for (uint32_t from = 0; from < source.m_columns.size(); ++from) {
+        const Column& c = source.m_columns[from];
+        const int32_t column = columnOf(c.component);
+        if (c.life != nullptr) {
+            for (uint32_t i = 0; i < sourceRows.size(); ++i)
+                if (column < 0)
+                    c.life->destroy(source.at(from, sourceRows[i]), 1);
+                else
+                    c.life->relocate(at(column, row + i), source.at(from, sourceRows[i]), 1);
+        } else if (column >= 0) {
+            for (uint32_t i = 0; i < sourceRows.size(); ++i)
+                copyValue(at(column + c.lane, row + i), source.at(from, sourceRows[i]), c.bytes);
+        }
     }
 }
 
 void Archetype::trim()
 {
-    m_blocks.resize((size_t{count()} + blockRows() - 1) >> m_blockShift);
+    const size_t blocks = (size_t{count()} + blockRows() - 1) >> m_blockShift;
+    for (; m_blocks.size() > blocks; m_blocks.pop_back())
+        freeBlock(m_blocks.back());
     m_blocks.shrink_to_fit();
     m_entities.shrink_to_fit();
+    m_capacity = static_cast<uint32_t>(
+        std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.capacity()}));
 }
 
 size_t Archetype::bookBytes() const
 {
     size_t bytes = sizeof(*this) + m_entities.capacity() * sizeof(Entity) +
                    m_versions.capacity() * sizeof(uint64_t) +
-                   m_columns.capacity() * sizeof(Column) + m_blocks.capacity() * sizeof(Block) +
+                   m_columns.capacity() * sizeof(Column) +
+                   m_blocks.capacity() * sizeof(std::byte*) + pages.capacity() * sizeof(uint32_t) +
+                   m_columnVersions.capacity() * sizeof(uint64_t) + m_disabled.bytes() +
                    (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
     for (const RowChanges& changes : m_rowChanges)
         bytes += changes.bytes();

@@ -12,8 +12,26 @@ void CommandBuffer::record(Entity entity, ComponentId id, Kind kind, const void*
     }
 }
 
+void CommandBuffer::freeBoxes()
+{
+    for (const Box& box : m_boxes)
+        box.free(box.value);
+    m_boxes.clear();
+}
+
+void CommandBuffer::swap(CommandBuffer& other) noexcept
+{
+    m_ops.swap(other.m_ops);
+    m_values.swap(other.m_values);
+    m_boxes.swap(other.m_boxes);
+    std::swap(m_created, other.m_created);
+    std::swap(m_epoch, other.m_epoch);
+    std::swap(m_tag, other.m_tag);
+}
+
 void CommandBuffer::clear()
 {
+    freeBoxes();
     m_ops.clear();
     m_values.clear();
     m_created = 0;

@@ -20,6 +20,7 @@
 #include "runtime/ecs/hierarchy.h"
 
 #include <cstring>
+#include <utility>
 
 namespace penumbra::ecs {
 
@@ -36,30 +37,38 @@ class CommandBuffer {
 public:
     // Names the buffer in its deferred entities, so that they are not taken for another's. 12 bits.
     explicit CommandBuffer(uint32_t tag = 0) : m_tag(tag & 0xfff) {}
+    CommandBuffer(CommandBuffer&& other) noexcept { swap(other); }
+    CommandBuffer& operator=(CommandBuffer&& other) noexcept
+    {
+        swap(other);
+        return *this;
+    }
+    ~CommandBuffer() { freeBoxes(); }
 
     // The entity may be used in this buffer at once, as a target and inside component values (the
     // fields in kEntityFields), until playback.
     template <class... Ts>
-    Entity create(const Ts&... values)
+    Entity create(Ts&&... values)
     {
         const Entity entity{m_created++, deferredGeneration()};
         m_ops.emplace_back(entity, 0, ComponentId{0}, Kind::create);
-        add(entity, values...);
+        add(entity, std::forward<Ts>(values)...);
         return entity;
     }
     void destroy(Entity entity) { m_ops.emplace_back(entity, 0, ComponentId{0}, Kind::destroy); }
 
     // Adds or overwrites.
     template <class... Ts>
-    void add(Entity entity, const Ts&... values)
+    void add(Entity entity, Ts&&... values)
     {
-        (record(entity, componentId<Ts>(), Kind::add, &values, kIsTag<Ts> ? 0 : sizeof(Ts)), ...);
+        (record(entity, Kind::add, std::forward<Ts>(values)), ...);
     }
     template <class T>
-    void set(Entity entity, const T& value)
+    void set(Entity entity, T&& value)
     {
-        static_assert(!std::is_same_v<T, Parent>, "setParent() changes parents");
-        record(entity, componentId<T>(), Kind::set, &value, sizeof(T));
+        static_assert(!std::is_same_v<std::remove_cvref_t<T>, Parent>,
+                      "setParent() changes parents");
+        record(entity, Kind::set, std::forward<T>(value));
     }
     template <class... Ts>
     void remove(Entity entity)
@@ -67,6 +76,12 @@ public:
         (record(entity, componentId<Ts>(), Kind::remove, nullptr, 0), ...);
     }
     void setParent(Entity child, Entity parent) { add(child, Parent{parent}); }
+    // As World::setEnabled(); done after all moves and before the destroys, in the order recorded.
+    void setEnabled(Entity entity, bool enabled, Reach reach = Reach::entity)
+    {
+        m_ops.emplace_back(entity, static_cast<uint32_t>(reach), ComponentId{0},
+                           enabled ? Kind::enable : Kind::disable);
+    }
 
     [[nodiscard]] bool isEmpty() const { return m_ops.empty(); }
     [[nodiscard]] size_t count() const { return m_ops.size(); }
@@ -75,10 +90,10 @@ public:
 private:
     friend class CommandPlayback;
 
-    enum class Kind : uint8_t { create, destroy, add, set, remove };
+    enum class Kind : uint8_t { create, destroy, add, set, remove, enable, disable };
     struct Op {
         Entity target;
-        uint32_t value; // offset in m_values; unused by create, destroy, remove
+        uint32_t value; // offset in m_values; of enable, disable the reach
         uint8_t component;
         Kind kind;
         uint16_t buffer = 0; // this and next: for playback
@@ -96,12 +111,38 @@ private:
         return 1u << 31 | m_tag << 19 | (m_epoch & 0x7ffff);
     }
     void record(Entity entity, ComponentId id, Kind kind, const void* value, size_t bytes);
+    template <class Value>
+    void record(Entity entity, Kind kind, Value&& value)
+    {
+        using T = std::remove_cvref_t<Value>;
+        if constexpr (kIsPlain<T> || kIsTag<T>) {
+            record(entity, componentId<T>(), kind, &value, kIsTag<T> ? 0 : sizeof(T));
+        } else { // lies in a box of its own; Op::value is its index
+            m_boxes.push_back({nullptr, [](void* box) { delete static_cast<T*>(box); }});
+            m_boxes.back().value = new T(std::forward<Value>(value));
+            m_ops.emplace_back(entity, static_cast<uint32_t>(m_boxes.size() - 1), componentId<T>(),
+                               kind);
+        }
+    }
+    [[nodiscard]] std::byte* valueAt(ComponentId id, uint32_t value)
+    {
+        return componentInfo(id).life != nullptr ? static_cast<std::byte*>(m_boxes[value].value)
+                                                 : m_values.data() + value;
+    }
+    void swap(CommandBuffer& other) noexcept;
+    void freeBoxes();
+
+    struct Box {
+        void* value;
+        void (*free)(void* value);
+    };
 
     std::vector<Op> m_ops;
-    std::vector<std::byte> m_values;
+    std::vector<std::byte> m_values; // trivially copyable ones
+    std::vector<Box> m_boxes;        // others, owned
     uint32_t m_created = 0;
     uint32_t m_epoch = 0; // playbacks so far
-    uint32_t m_tag;
+    uint32_t m_tag = 0;
 };
 
 // Makes the changes, in the order given, and empties the buffers.

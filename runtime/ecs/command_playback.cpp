@@ -1,14 +1,18 @@
 // Playback of command buffers, in order:
 //   collect    ops -> one slot per entity; new entities get their ids, in recording order
 //   merge      a slot's ops -> its final set of components; deferred entities in values -> real
-//   ones move       slots that go from one archetype to one other form a run, which moves column by
+//   tell       observers, of what goes
+//   move       slots that go from one archetype to one other form a run, which moves column by
 //              column; runs go by (destination, source)
 //   write      values, in recording order
-//   attach     parents; then destroys
+//   attach     parents
+//   enable     and disable
+//   tell       what came, then what was set
+//   destroy    which tells by itself
 #include "runtime/ecs/command_buffer.h"
 
 #include "runtime/assert.h"
-#include "runtime/ecs/world.h"
+#include "runtime/ecs/observer_table.h"
 
 #include <algorithm>
 
@@ -23,19 +27,34 @@ public:
     PlaybackStatistics run()
     {
         m_world.assertStructural();
+        ObserverTable* const observers = m_world.m_observers;
+        if (observers != nullptr)
+            observers->enter();
         collect();
         for (uint32_t i = 0; i < m_slots.size(); ++i)
             merge(i);
+        if (observers != nullptr)
+            tell(*observers, ObservedEvent::remove);
         move();
         for (const Slot& slot : m_slots)
             write(slot);
         for (Slot& slot : m_slots)
             attach(slot);
+        if (m_enables)
+            setEnabled();
+        if (observers != nullptr) {
+            tell(*observers, ObservedEvent::add);
+            tell(*observers, ObservedEvent::set);
+        }
+        std::vector<Entity> doomed;
         for (const Slot& slot : m_slots)
-            if (slot.destroyed && m_world.alive(slot.entity)) // else it went with its parent
-                m_world.destroy(slot.entity);
+            if (slot.destroyed)
+                doomed.push_back(slot.entity);
+        m_world.destroyMany(doomed);
         for (CommandBuffer* buffer : m_buffers)
             buffer->clear();
+        if (observers != nullptr)
+            observers->leave();
         return m_statistics;
     }
 
@@ -56,7 +75,7 @@ private:
     struct Run {
         Archetype* from;
         Archetype* to;
-        std::vector<uint32_t> slots;
+        std::vector<Entity> entities;
     };
 
     void collect();
@@ -66,10 +85,13 @@ private:
     void moveRun(const Run& run);
     void write(const Slot& slot);
     void attach(Slot& slot);
+    void setEnabled();
+    void tell(ObserverTable& observers, ObservedEvent event);
+    [[nodiscard]] ComponentMask whatHappened(const Slot& slot, ObservedEvent event) const;
     [[nodiscard]] Entity real(Entity entity, uint32_t buffer) const;
     [[nodiscard]] std::byte* valueOf(const Op& op) const
     {
-        return m_buffers[op.buffer]->m_values.data() + op.value;
+        return m_buffers[op.buffer]->valueAt(op.component, op.value);
     }
     [[nodiscard]] Run& runOf(Archetype* from, Archetype* to);
 
@@ -79,10 +101,9 @@ private:
     std::vector<Slot> m_slots;
     std::vector<std::vector<Entity>> m_created; // [buffer][deferred index]
     std::vector<Run> m_runs;
-    uint32_t m_lastRun = 0;         // most entities go the way of the one before
-    Archetype* m_lastTo = nullptr;  // likewise
-    std::vector<Entity> m_entities; // scratch of moveRun()
-    std::vector<uint32_t> m_rows;   // scratch of moveRun()
+    uint32_t m_lastRun = 0;        // most entities go the way of the one before
+    Archetype* m_lastTo = nullptr; // likewise
+    bool m_enables = false;        // there are such commands
     PlaybackStatistics m_statistics;
 };
 
@@ -106,6 +127,7 @@ void CommandPlayback::collect()
     for (uint32_t b = 0; b < m_buffers.size(); ++b) {
         CommandBuffer& buffer = *m_buffers[b];
         m_created[b].reserve(buffer.m_created);
+        m_world.m_entities.reserve(buffer.m_created);
         m_slots.reserve(m_slots.size() + buffer.m_created);
         for (Op& op : buffer.m_ops) {
             op.buffer = static_cast<uint16_t>(b);
@@ -117,8 +139,10 @@ void CommandPlayback::collect()
                 ++m_statistics.dropped;
                 continue;
             }
-            if (m_world.m_entities.indexCount() > slotOf.size())
-                slotOf.resize(m_world.m_entities.indexCount() * size_t{2}, kNone);
+            if (const size_t count = m_world.m_entities.indexCount(); count > slotOf.size()) {
+                reserveSparingly(slotOf, count);
+                slotOf.resize(slotOf.capacity(), kNone);
+            }
             uint32_t& index = slotOf[entity.index];
             if (index == kNone) {
                 index = static_cast<uint32_t>(m_slots.size());
@@ -167,6 +191,10 @@ void CommandPlayback::merge(uint32_t slotIndex)
         switch (op->kind) {
         case Kind::create:
             break;
+        case Kind::enable:
+        case Kind::disable:
+            m_enables = true;
+            break;
         case Kind::destroy:
             slot.destroyed = true;
             break;
@@ -193,15 +221,18 @@ void CommandPlayback::merge(uint32_t slotIndex)
             break;
         }
     }
+    if (slot.destroyed) // wins over all that is said besides
+        mask = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
     if (m_lastTo == nullptr || !(m_lastTo->mask() == mask))
         m_lastTo = &m_world.archetypeOf(mask);
     slot.to = m_lastTo;
     if (slot.to != slot.from)
-        runOf(slot.from, slot.to).slots.push_back(slotIndex);
+        runOf(slot.from, slot.to).entities.push_back(slot.entity);
 }
 
 void CommandPlayback::move()
 {
+    m_world.m_hierarchy.makeRoom(m_world.m_entities.indexCount());
     const auto key = [](const Run& run) {
         return std::pair(run.to->index(), run.from != nullptr ? run.from->index() : kNone);
     };
@@ -213,40 +244,33 @@ void CommandPlayback::move()
 
 void CommandPlayback::moveRun(const Run& run)
 {
-    EntityTable& table = m_world.m_entities;
-    m_entities.clear();
-    m_rows.clear();
-    for (const uint32_t i : run.slots) {
-        m_entities.push_back(m_slots[i].entity);
-        m_rows.push_back(table[m_slots[i].entity].row);
-    }
-    uint32_t row = run.to->append(m_entities, m_world.m_stamp);
-    if (run.from != nullptr)
-        run.to->copyRows(row, *run.from, m_rows);
-    for (const Entity entity : m_entities) {
-        table[entity].archetype = run.to->index();
-        table[entity].row = row++;
-    }
-    m_statistics.moves += static_cast<uint32_t>(run.slots.size());
-    if (run.from == nullptr)
+    m_statistics.moves += static_cast<uint32_t>(run.entities.size());
+    if (run.from != nullptr) {
+        static_cast<void>(m_world.moveRun(run.entities, *run.from, *run.to));
         return;
-    // From the last row down: the row that fills a gap is then never one that leaves as well.
-    std::sort(m_rows.begin(), m_rows.end(), std::greater<>());
-    for (const uint32_t left : m_rows)
-        m_world.takeRowOut(*run.from, left);
+    }
+    m_world.makeRoom(*run.to, static_cast<uint32_t>(run.entities.size()));
+    m_world.setPlaces(*run.to, run.to->append(run.entities, m_world.m_stamp));
 }
 
 void CommandPlayback::write(const Slot& slot)
 {
-    const uint32_t row = m_world.m_entities[slot.entity].row;
+    if (slot.destroyed)
+        return;
+    const uint32_t row = m_world.m_entities.place(slot.entity).row;
+    ComponentMask there = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
     for (const Op* op = slot.first; op != nullptr; op = op->next) {
         const bool writes = op->kind == Kind::add || op->kind == Kind::set;
         const int32_t column = slot.to->columnOf(op->component);
         if (!writes || column < 0)
             continue;
         if (slot.from == slot.to) // else the new row is marked already
-            slot.to->markRow(column, row, m_world.m_stamp);
-        slot.to->write(op->component, row, valueOf(*op));
+            slot.to->markRow(static_cast<uint32_t>(column), row, m_world.m_stamp);
+        if (componentInfo(op->component).life == nullptr)
+            slot.to->write(op->component, row, valueOf(*op));
+        else
+            slot.to->moveIn(op->component, row, valueOf(*op), there.test(op->component));
+        there.set(op->component);
     }
 }
 
@@ -268,12 +292,55 @@ void CommandPlayback::attach(Slot& slot)
         return;
     ++m_statistics.refused;
     const Entity old = hierarchy.parentOf(slot.entity);
-    if (old.isNull()) {
-        m_world.remove<Parent>(slot.entity);
+    if (old.isNull() && slot.from != nullptr && slot.from->mask().test(m_parent))
+        return m_world.remove<Parent>(slot.entity);
+    if (old.isNull()) { // observers were not told that it has one
+        ComponentMask mask = m_world.components(slot.entity);
+        if (mask.test(m_parent)) {
+            mask.reset(m_parent);
+            m_world.move(slot.entity, m_world.place(slot.entity), m_world.archetypeOf(mask));
+        }
         return;
     }
-    const World::Place at = m_world.place(slot.entity);
+    const Place at = m_world.place(slot.entity);
     at.archetype->write(m_parent, at.row, &old);
+}
+
+void CommandPlayback::setEnabled()
+{
+    for (uint32_t b = 0; b < m_buffers.size(); ++b)
+        for (const Op& op : m_buffers[b]->m_ops) {
+            const bool enable = op.kind == Kind::enable;
+            if (!enable && op.kind != Kind::disable)
+                continue;
+            const Entity entity = real(op.target, b);
+            if (m_world.alive(entity)) // else counted as dropped already
+                m_world.setEnabled(entity, enable, static_cast<Reach>(op.value));
+        }
+}
+
+ComponentMask CommandPlayback::whatHappened(const Slot& slot, ObservedEvent event) const
+{
+    const ComponentMask before = slot.from != nullptr ? slot.from->mask() : ComponentMask{};
+    if (event == ObservedEvent::remove)
+        return before - slot.to->mask();
+    const ComponentMask& now = m_world.place(slot.entity).archetype->mask();
+    if (event == ObservedEvent::add)
+        return now - before;
+    ComponentMask written;
+    for (const Op* op = slot.destroyed ? nullptr : slot.first; op != nullptr; op = op->next)
+        if ((op->kind == Kind::add || op->kind == Kind::set) && now.test(op->component) &&
+            before.test(op->component))
+            written.set(op->component);
+    return written;
+}
+
+void CommandPlayback::tell(ObserverTable& observers, ObservedEvent event)
+{
+    ObserverRun run(observers, event);
+    for (const Slot& slot : m_slots)
+        if (event != ObservedEvent::remove || slot.from != nullptr)
+            run.add(slot.entity, m_world.components(slot.entity), whatHappened(slot, event));
 }
 
 PlaybackStatistics play(World& world, std::span<CommandBuffer* const> buffers)

@@ -4,6 +4,7 @@
 #include "runtime/ecs/entity_table.h"
 
 #include <atomic>
+#include <fmt/format.h>
 #include <mutex>
 #include <unordered_map>
 
@@ -26,15 +27,19 @@ Registry& registry()
     return instance;
 }
 
+} // namespace
+
 uint64_t hashName(std::string_view name)
 {
-    uint64_t hash = 0xcbf29ce484222325u; // FNV-1a, 64 bits
+    uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : name)
         hash = (hash ^ static_cast<uint8_t>(c)) * 0x100000001b3u;
     return hash;
 }
 
-} // namespace
+// [ComponentId], for debug/gdb_printers.py: a name that debuggers find.
+extern const ComponentInfo* debuggedComponents;
+const ComponentInfo* debuggedComponents = nullptr;
 
 std::string toString(Entity entity)
 {
@@ -52,7 +57,8 @@ ComponentId registerComponent(const ComponentInfo& info)
                         known.name, info.name);
         PENUMBRA_ASSERT(known.bytes == info.bytes && known.laneCount == info.laneCount &&
                             known.laneAlignment == info.laneAlignment &&
-                            known.rowChanges == info.rowChanges,
+                            known.rowChanges == info.rowChanges &&
+                            (known.life == nullptr) == (info.life == nullptr),
                         "component '{}' has two layouts ({} and {} bytes): two types, one name?",
                         info.name, known.bytes, info.bytes);
         return found->second;
@@ -62,6 +68,7 @@ ComponentId registerComponent(const ComponentInfo& info)
                     kMaxComponents);
     const auto id = static_cast<ComponentId>(count);
     all.infos[id] = info;
+    debuggedComponents = all.infos.data();
     all.infos[id].nameHash = hash;
     all.byHash.emplace(hash, id);
     all.count.store(count + 1, std::memory_order_release);

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <iosfwd> // declares std::string; <string> itself takes a third of this header's time
 
 namespace penumbra::ecs {
 

@@ -1,14 +1,24 @@
 #include "runtime/ecs/hierarchy.h"
 
+#include "runtime/assert.h"
+#include "runtime/ecs/archetype.h"
+
 #include <algorithm>
 
 namespace penumbra::ecs {
 
+void Hierarchy::makeRoom(size_t count)
+{
+    if (m_nodes.size() > count)
+        return;
+    reserveSparingly(m_nodes, count + 1);
+    m_nodes.resize(m_nodes.capacity());
+}
+
 uint32_t Hierarchy::nodeOf(Entity entity)
 {
+    makeRoom(entity.index + size_t{1});
     const uint32_t node = entity.index + 1;
-    if (node >= m_nodes.size())
-        m_nodes.resize(std::max<size_t>(node + 1, m_nodes.size() * 2));
     m_nodes[node].generation = entity.generation;
     return node;
 }
@@ -86,11 +96,12 @@ void Hierarchy::collect(Entity root, std::vector<Entity>& out) const
                 out.push_back(entityOf(child));
 }
 
-void Hierarchy::refresh()
+void Hierarchy::refresh(const EntityTable& table)
 {
-    if (!m_stale)
+    if (!m_stale && m_table == &table && m_runsAt == table.moves())
         return;
-    m_stale = false;
+    if (!m_stale)
+        return findRuns(table);
     m_order.clear();
     m_orderNodes.clear();
     m_levels.assign(1, 0);
@@ -107,6 +118,34 @@ void Hierarchy::refresh()
         for (; slot < levelEnd; ++slot)
             pushChildren(m_orderNodes[slot], slot);
     }
+    findRuns(table);
+    m_stale = false;
+}
+
+void Hierarchy::findRuns(const EntityTable& table)
+{
+    m_runs.clear();
+    for (uint32_t slot = 0; slot < m_order.size(); ++slot) {
+        const Place place = table.place(m_order[slot].entity);
+        const uint32_t inBlock = place.row & (place.archetype->blockRows() - 1);
+        if (!m_runs.empty() && inBlock != 0) {
+            Run& run = m_runs.back();
+            if (run.archetype == place.archetype && run.row + run.count == place.row) {
+                ++run.count;
+                continue;
+            }
+        }
+        m_runs.push_back({place.archetype, place.row, slot, 1});
+    }
+    m_table = &table;
+    m_runsAt = table.moves();
+}
+
+std::span<const Hierarchy::Run> Hierarchy::runs() const
+{
+    PENUMBRA_ASSERT(m_order.empty() || (!m_stale && m_runsAt == m_table->moves()),
+                    "rows moved since World::hierarchy() was called");
+    return m_runs;
 }
 
 Entity Hierarchy::parentOf(Entity child) const
@@ -127,7 +166,8 @@ std::vector<Entity> Hierarchy::childrenOf(Entity parent) const
 size_t Hierarchy::bytes() const
 {
     return m_nodes.capacity() * sizeof(Node) + m_order.capacity() * sizeof(Slot) +
-           (m_orderNodes.capacity() + m_levels.capacity()) * sizeof(uint32_t);
+           (m_orderNodes.capacity() + m_levels.capacity()) * sizeof(uint32_t) +
+           m_runs.capacity() * sizeof(Run);
 }
 
 } // namespace penumbra::ecs

@@ -25,7 +25,10 @@ struct Parent {
 };
 static_assert(sizeof(Parent) == 8 && std::is_trivially_copyable_v<Parent>);
 template <>
-inline constexpr std::array<uint32_t, 1> kEntityFields<Parent>{offsetof(Parent, entity)};
+inline constexpr auto kFields<Parent> = fields(PENUMBRA_FIELD(Parent, entity));
+
+// Whom an operation is for: one entity, or it and everything below it at that moment.
+enum class Reach : uint8_t { entity, subtree };
 
 class Hierarchy {
 public:
@@ -42,6 +45,17 @@ public:
     // of one level in parallel.
     [[nodiscard]] std::span<const uint32_t> levels() const { return m_levels; }
 
+    // Slots whose entities' rows follow each other in one block of one archetype: what a walk in
+    // order can treat as arrays. Current as order() is.
+    struct Run {
+        Archetype* archetype;
+        uint32_t row;  // of the first
+        uint32_t slot; // of the first
+        uint32_t count;
+    };
+    // Asserts that no row has moved since.
+    [[nodiscard]] std::span<const Run> runs() const;
+
     [[nodiscard]] bool contains(Entity entity) const { return find(entity) != nullptr; }
     [[nodiscard]] Entity parentOf(Entity child) const; // null: none
     [[nodiscard]] std::vector<Entity> childrenOf(Entity parent) const;
@@ -52,13 +66,17 @@ public:
 private:
     friend class World;
     friend class CommandPlayback;
+    friend class WorldAccess;
 
     // False, and nothing changed, if it would close a cycle.
     [[nodiscard]] bool attach(Entity child, Entity parent);
     void detach(Entity child);
     // Appends `root` and everything below it, parents first.
     void collect(Entity root, std::vector<Entity>& out) const;
-    void refresh();
+    void refresh(const EntityTable& table);
+    void findRuns(const EntityTable& table);
+    // For indices below `count`: attach() does not allocate then.
+    void makeRoom(size_t count);
 
     // Links by node; node of an entity = index + 1. Node 0 is the parent of all roots with
     // children.
@@ -67,7 +85,7 @@ private:
         uint32_t parent = kNone; // kNone: neither parent nor children
         uint32_t firstChild = 0, lastChild = 0, next = 0, previous = 0; // 0: none
     };
-    uint32_t nodeOf(Entity entity); // makes room
+    uint32_t nodeOf(Entity entity);
     [[nodiscard]] const Node* find(Entity entity) const
     {
         const size_t node = size_t{entity.index} + 1;
@@ -86,6 +104,9 @@ private:
     std::vector<Slot> m_order;
     std::vector<uint32_t> m_orderNodes; // [order().size()], scratch of refresh()
     std::vector<uint32_t> m_levels{0};
+    std::vector<Run> m_runs;
+    const EntityTable* m_table = nullptr; // that refresh() saw
+    uint64_t m_runsAt = 0;                // its moves() then
     bool m_stale = false;
 };
 

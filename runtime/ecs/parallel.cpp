@@ -1,5 +1,7 @@
 #include "runtime/ecs/parallel.h"
 
+#include "runtime/ecs/thread_order.h"
+
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -12,7 +14,14 @@ void parallelFor(uint32_t count, void* data, void (*call)(void* data, uint32_t i
             call(data, i);
         return;
     }
-    tbb::parallel_for(uint32_t{0}, count, [=](uint32_t i) { call(data, i); });
+    ThreadOrder begin, end;
+    begin.release();
+    tbb::parallel_for(uint32_t{0}, count, [=, &begin, &end](uint32_t i) {
+        begin.acquire();
+        call(data, i);
+        end.release();
+    });
+    end.acquire();
 }
 
 } // namespace penumbra::ecs

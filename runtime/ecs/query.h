@@ -1,9 +1,11 @@
 // Query: walks all rows that have what its terms ask for. Made by World::query() and
-// SystemContext::query(), cheap to make and to copy; the archetypes it matches are cached in World.
+// SystemContext::query(), cheap to make and to copy; the archetypes it matches are cached in World,
+// which looks for new ones when a query is made: make it where you use it, do not keep it.
 //
 //   world.query<Position, const Velocity, Without<Frozen>>().each(
 //       [&](Position& p, const Velocity& v) { p.x += v.x * dt; });
 //
+// Disabled entities are skipped, unless WithDisabled is among the terms.
 // Order: archetypes in the order they were made, rows from first to last; the same at any number of
 // threads. While it runs, structural changes are refused (asserted in debug): record commands.
 // Terms are listed in query_terms.h. Lambdas may take Entity as their first parameter.
@@ -13,14 +15,15 @@
 #include "runtime/ecs/query_cache.h"
 #include "runtime/ecs/query_terms.h"
 
-#include <atomic>
 #include <utility>
 
 namespace penumbra::ecs {
 
+class Hierarchy;
 struct Parent; // written by World alone, so that the links of Hierarchy follow
 
-// Rows that lie side by side in memory: one segment of one archetype.
+// Rows that lie side by side in memory: one segment of one archetype; where rows of it are
+// disabled, each run of enabled rows between them is a Segment of its own.
 struct Segment {
     const Entity* entities; // [count]
     uint32_t count;
@@ -33,6 +36,7 @@ class Query {
     using ArgumentIfData =
         std::conditional_t<kIsData<Term>, std::tuple<RowArgument<Term>>, std::tuple<>>;
     using Arguments = decltype(std::tuple_cat(std::declval<ArgumentIfData<Terms>>()...));
+    static constexpr bool kSeesDisabled = (std::is_same_v<Terms, WithDisabled> || ...);
     static constexpr size_t kDataCount = std::tuple_size_v<Arguments>;
     static constexpr size_t kChangedCount =
         (0 + ... + (TermTraits<Terms>::kKind == TermKind::changed));
@@ -52,12 +56,13 @@ public:
     static constexpr bool kReadOnly = !(kWrites<Terms> || ...);
 
     // For World and SystemContext. `iterating` counts the walks in progress.
-    Query(const QueryCache& cache, Stamp stamp, uint64_t since, std::atomic<uint32_t>& iterating)
+    Query(const QueryCache& cache, Stamp stamp, uint64_t since, uint32_t& iterating)
         : m_cache(&cache), m_stamp(stamp), m_since(since), m_iterating(&iterating)
     {}
 
     // The terms, for the cache.
     static uint32_t slot();
+    static uint32_t findSlot();
 
     // Changed<> passes what was written after this version (World::version() at the last look).
     [[nodiscard]] Query since(uint64_t version) const
@@ -78,7 +83,7 @@ public:
     void eachSegment(F&& f) const;
 
     // The same on all threads of the arena, one segment per task; f may be called at once for
-    // different segments. Inline if there are fewer than kInlineSegments.
+    // different ones. Inline if there are fewer than kInlineSegments.
     template <class F>
     void parallelEach(F&& f) const;
     template <class F>
@@ -86,21 +91,46 @@ public:
     // 16 KiB take about as long to walk as handing a task to another thread.
     static constexpr uint32_t kInlineSegments = 4;
 
-    // Rows in matching archetypes; Changed<> is not looked at.
-    [[nodiscard]] uint32_t count() const { return m_cache->rowCount(); }
+    // f(first, arguments…, parent) for each row that is part of the hierarchy, parents before their
+    // children: `parent` is the parent's value of the first term, const, null if there is none.
+    //   world.query<WorldFromNode, const Local>().eachDown(world.hierarchy(), f)
+    // The first term is not split into lanes. Rows that lie in memory as in the hierarchy's order
+    // are walked as arrays. Not with Changed<>. Disabled rows are skipped as everywhere; an enabled
+    // child of a disabled parent is given the value that the parent has.
+    template <class F>
+    void eachDown(const Hierarchy& hierarchy, F&& f) const;
+
+    // Rows that each(), and Segments that eachSegment() would hand out; Changed<> is not looked at.
+    [[nodiscard]] uint32_t count() const;
     [[nodiscard]] uint32_t segmentCount() const;
 
 private:
     using Match = QueryCache::Match;
-    struct Task {
+    struct Run { // rows to visit, within one segment
         const Match* match;
         uint32_t segment;
+        uint32_t row; // from the segment's start
+        uint32_t count;
+        [[nodiscard]] uint32_t first() const
+        {
+            return (segment << match->archetype->segmentShift()) + row;
+        }
     };
 
-    template <class Visit>
-    void forSegments(Visit&& visit) const;
-    template <class Visit>
-    void forSegmentsParallel(Visit&& visit) const;
+    // visit(Run): a segment, or, without its disabled rows, a Run for each stretch between them.
+    // Those that look at rows one by one take whole segments (kWhole) and skip by themselves.
+    template <bool kWhole, class Visit>
+    void forRunsOf(const Match& match, uint32_t segment, Visit&& visit) const;
+    template <bool kWhole, class Visit>
+    void forRuns(Visit&& visit) const;
+    template <bool kWhole, class Visit>
+    void forRunsParallel(Visit&& visit) const; // visit(Run, ordinal)
+    // Rows of `archetype` are to be skipped.
+    [[nodiscard]] static bool skips(const Archetype& archetype)
+    {
+        return !kSeesDisabled && archetype.disabled().count() != 0;
+    }
+    [[nodiscard]] bool archetypePasses(const Match& match) const;
     [[nodiscard]] bool segmentPasses(const Match& match, uint32_t segment) const;
     [[nodiscard]] uint64_t changedRows(const Match& match, uint32_t segment, uint32_t word) const;
     // `count` rows from `row` of a segment are about to be written.
@@ -125,16 +155,18 @@ private:
     template <class F>
     void callRun(F& f, const Match& match, uint32_t row, uint32_t count) const;
     template <class F>
-    void callChanged(F& f, const Match& match, uint32_t segment) const;
+    void callMarked(F& f, const Run& run) const; // marks, then callRun
     template <class F>
-    void callSegment(F& f, const Match& match, uint32_t segment, uint32_t ordinal) const;
+    void callChanged(F& f, const Run& segment) const;
+    template <class F>
+    void callSegment(F& f, const Run& run, uint32_t ordinal) const;
 
     const QueryCache* m_cache;
     Stamp m_stamp;
     uint64_t m_since;
-    std::atomic<uint32_t>* m_iterating;
+    uint32_t* m_iterating;
 };
 
 } // namespace penumbra::ecs
 
-#include "runtime/ecs/query_impl.h"
+#include "runtime/ecs/query_walk.h"

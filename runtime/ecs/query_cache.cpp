@@ -41,10 +41,10 @@ const QueryTerms& queryTerms(uint32_t slot)
     return all.terms[slot];
 }
 
-void QueryCache::extend(std::span<const std::unique_ptr<Archetype>> archetypes)
+void QueryCache::extend(std::span<Archetype* const> archetypes)
 {
-    for (; m_seen < archetypes.size(); ++m_seen) {
-        Archetype* archetype = archetypes[m_seen].get();
+    for (size_t seen = m_seen; seen < archetypes.size(); ++seen) {
+        Archetype* archetype = archetypes[seen];
         if (!archetype->mask().containsAll(m_terms.with) ||
             archetype->mask().intersects(m_terms.without))
             continue;
@@ -56,6 +56,7 @@ void QueryCache::extend(std::span<const std::unique_ptr<Archetype>> archetypes)
             match.columns[term++] = static_cast<int16_t>(archetype->columnOf(id));
         m_matches.push_back(match);
     }
+    __atomic_store_n(&m_seen, archetypes.size(), __ATOMIC_RELEASE);
 }
 
 uint32_t QueryCache::rowCount() const

@@ -31,7 +31,12 @@ public:
     explicit QueryCache(const QueryTerms& terms) : m_terms(terms) {}
 
     // Looks at the archetypes that appeared since the last call.
-    void extend(std::span<const std::unique_ptr<Archetype>> archetypes);
+    void extend(std::span<Archetype* const> archetypes);
+    // Thread-safe: true if extend() has nothing to add.
+    [[nodiscard]] bool isCurrent(size_t archetypeCount) const
+    {
+        return __atomic_load_n(&m_seen, __ATOMIC_ACQUIRE) == archetypeCount;
+    }
 
     [[nodiscard]] std::span<const Match> matches() const { return m_matches; }
     [[nodiscard]] uint32_t rowCount() const;

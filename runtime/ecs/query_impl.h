@@ -1,4 +1,4 @@
-// The templates of query.h, which includes this file.
+// The templates of query.h, which includes this file: terms, marks, rows. The walks: query_walk.h.
 #pragma once
 
 #include "runtime/ecs/query.h"
@@ -9,53 +9,80 @@ namespace penumbra::ecs {
 class IterationGuard {
 public:
 #ifdef NDEBUG
-    explicit IterationGuard(std::atomic<uint32_t>&) {}
+    explicit IterationGuard(uint32_t&) {}
 #else
-    explicit IterationGuard(std::atomic<uint32_t>& walks) : m_walks(walks)
+    explicit IterationGuard(uint32_t& walks) : m_walks(walks)
     {
-        ++m_walks;
+        __atomic_fetch_add(&m_walks, 1, __ATOMIC_RELAXED);
     }
     ~IterationGuard()
     {
-        --m_walks;
+        __atomic_fetch_sub(&m_walks, 1, __ATOMIC_RELAXED);
     }
     IterationGuard(const IterationGuard&) = delete;
     IterationGuard& operator=(const IterationGuard&) = delete;
 
 private:
-    std::atomic<uint32_t>& m_walks;
+    uint32_t& m_walks;
 #endif
 };
 
 template <class... Terms>
+inline constinit uint32_t kKnownQuery = 0; // Query::slot() once found, plus one: as kKnownId
+
+template <class... Terms>
 uint32_t Query<Terms...>::slot()
 {
-    static const uint32_t slot = [] {
+    const uint32_t known = __atomic_load_n(&kKnownQuery<Terms...>, __ATOMIC_RELAXED);
+    return known != 0 ? known - 1 : findSlot();
+}
+
+template <class... Terms>
+[[gnu::noinline, gnu::cold]] uint32_t Query<Terms...>::findSlot()
+{
+    const uint32_t found = [] {
         QueryTerms terms;
         [[maybe_unused]] const auto add = [&]<class Term>() {
             using Traits = TermTraits<Term>;
-            const ComponentId id = componentId<typename Traits::Component>();
-            if (Traits::kKind == TermKind::without)
-                terms.without.set(id);
-            else if (!Traits::kOptional)
-                terms.with.set(id);
-            if (Traits::kKind == TermKind::data)
-                terms.data.push_back(id);
-            if (Traits::kKind == TermKind::changed)
-                terms.changed.push_back(id);
+            if constexpr (Traits::kKind != TermKind::option) {
+                const ComponentId id = componentId<typename Traits::Component>();
+                if (Traits::kKind == TermKind::without)
+                    terms.without.set(id);
+                else if (!Traits::kOptional)
+                    terms.with.set(id);
+                if (Traits::kKind == TermKind::data)
+                    terms.data.push_back(id);
+                if (Traits::kKind == TermKind::changed)
+                    terms.changed.push_back(id);
+            }
         };
         (add.template operator()<Terms>(), ...);
         return registerQuery(terms);
     }();
-    return slot;
+    __atomic_store_n(&kKnownQuery<Terms...>, found + 1, __ATOMIC_RELAXED);
+    return found;
+}
+
+template <class... Terms>
+uint32_t Query<Terms...>::count() const
+{
+    uint32_t rows = m_cache->rowCount();
+    for (const Match& match : m_cache->matches())
+        rows -= kSeesDisabled ? 0 : match.archetype->disabled().count();
+    return rows;
 }
 
 template <class... Terms>
 uint32_t Query<Terms...>::segmentCount() const
 {
     uint32_t segments = 0;
-    for (const Match& match : m_cache->matches())
-        segments += match.archetype->segmentCount();
+    for (const Match& match : m_cache->matches()) {
+        if (!skips(*match.archetype))
+            segments += match.archetype->segmentCount();
+        else
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run&) { ++segments; });
+    }
     return segments;
 }
 
@@ -74,6 +101,16 @@ bool Query<Terms...>::segmentPasses(const Match& match, uint32_t segment) const
     bool passes = kChangedCount == 0;
     for (size_t i = 0; i < kChangedCount; ++i)
         passes |= match.archetype->version(match.columns[kDataCount + i], segment) > m_since;
+    return passes;
+}
+
+// False if no segment passes: most worlds hold still for the most part.
+template <class... Terms>
+bool Query<Terms...>::archetypePasses(const Match& match) const
+{
+    bool passes = kChangedCount == 0;
+    for (size_t i = 0; i < kChangedCount; ++i)
+        passes |= match.archetype->version(match.columns[kDataCount + i]) > m_since;
     return passes;
 }
 
@@ -167,22 +204,50 @@ void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row, uint32_t c
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment) const
+void Query<Terms...>::callMarked(F& f, const Run& run) const
 {
+    mark(*run.match, run.segment, run.row, run.count);
+    callRun(f, *run.match, run.first(), run.count);
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::callChanged(F& f, const Run& segment) const
+{
+    const Match& match = *segment.match;
     const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    const uint32_t first = segment.first();
+    const uint32_t rows = segment.count;
+    const bool skipsSome = skips(archetype);
     const auto columns = columnPointers(match, first, DataIndices());
     const Entity* entities = archetype.entities().data() + first;
+    // First which rows, without a branch per row: where few changed, here and there, wrong guesses
+    // would take longer than the work.
+    std::array<uint16_t, kPageRows + 3> changed;
+    uint32_t count = 0;
     for (uint32_t word = 0; word * 64 < rows; ++word) {
         const uint32_t left = rows - word * 64;
-        uint64_t bits = changedRows(match, segment, word);
+        uint64_t bits = changedRows(match, segment.segment, word);
         bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
-        for (; bits != 0; bits &= bits - 1) {
-            const uint32_t row = word * 64 + static_cast<uint32_t>(std::countr_zero(bits));
-            mark(match, segment, row, 1);
-            callRow(f, entities, row, columns, DataIndices());
+        if (skipsSome)
+            bits &= ~archetype.disabled().word(first + word * 64);
+        if (bits == ~uint64_t{0}) {
+            for (uint32_t i = 0; i < 64; ++i)
+                changed[count++] = static_cast<uint16_t>(word * 64 + i);
+            continue;
         }
+        do
+            for (uint32_t i = 0; i < 3; ++i) { // past the last bit, writes what counts for nothing
+                changed[count] = static_cast<uint16_t>(
+                    word * 64 + static_cast<uint32_t>(std::countr_zero(bits)));
+                count += bits != 0;
+                bits &= bits - 1;
+            }
+        while (bits != 0);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        mark(match, segment.segment, changed[i], 1);
+        callRow(f, entities, changed[i], columns, DataIndices());
     }
 }
 
@@ -203,103 +268,16 @@ auto Query<Terms...>::segmentArgument(const Columns& columns)
 
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callSegment(F& f, const Match& match, uint32_t segment,
-                                  uint32_t ordinal) const
+void Query<Terms...>::callSegment(F& f, const Run& run, uint32_t ordinal) const
 {
-    const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment << archetype.segmentShift();
-    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
-    mark(match, segment, 0, rows);
-    const auto columns = columnPointers(match, first, DataIndices());
+    mark(*run.match, run.segment, run.row, run.count);
+    const auto columns = columnPointers(*run.match, run.first(), DataIndices());
     [&]<size_t... k>(std::index_sequence<k...>)
     {
-        f(Segment{archetype.entities().data() + first, rows, ordinal},
+        f(Segment{run.match->archetype->entities().data() + run.first(), run.count, ordinal},
           segmentArgument<k>(columns)...);
     }
     (DataIndices());
-}
-
-template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegments(Visit&& visit) const
-{
-    const IterationGuard guard(*m_iterating);
-    uint32_t ordinal = 0;
-    for (const Match& match : m_cache->matches())
-        for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
-            if (segmentPasses(match, s))
-                visit(match, s, ordinal++);
-}
-
-template <class... Terms>
-template <class Visit>
-void Query<Terms...>::forSegmentsParallel(Visit&& visit) const
-{
-    std::vector<Task> tasks;
-    forSegments([&](const Match& match, uint32_t s, uint32_t) { tasks.push_back({&match, s}); });
-    const IterationGuard guard(*m_iterating);
-    const auto count = static_cast<uint32_t>(tasks.size());
-    const auto run = [&](uint32_t i) { visit(*tasks[i].match, tasks[i].segment, i); };
-    if (count >= kInlineSegments)
-        return parallelFor(count, run);
-    for (uint32_t i = 0; i < count; ++i)
-        run(i);
-}
-
-template <class... Terms>
-template <class F>
-void Query<Terms...>::eachSegment(F&& f) const
-{
-    forSegments([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
-}
-
-template <class... Terms>
-template <class F>
-void Query<Terms...>::parallelEachSegment(F&& f) const
-{
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t ordinal) {
-        callSegment(f, match, segment, ordinal);
-    });
-}
-
-template <class... Terms>
-template <class F>
-void Query<Terms...>::each(F&& f) const
-{
-    if constexpr (kChangedCount > 0) {
-        forSegments([&](const Match& match, uint32_t s, uint32_t) { callChanged(f, match, s); });
-        return;
-    }
-    // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
-    const IterationGuard guard(*m_iterating);
-    for (const Match& match : m_cache->matches()) {
-        const Archetype& archetype = *match.archetype;
-        const uint32_t rows = archetype.count();
-        for (uint32_t s = 0; !kReadOnly && s < archetype.segmentCount(); ++s)
-            mark(match, s, 0,
-                 std::min(archetype.segmentRows(), rows - s * archetype.segmentRows()));
-        for (uint32_t row = 0; row < rows; row += archetype.blockRows())
-            callRun(f, match, row, std::min(archetype.blockRows(), rows - row));
-    }
-}
-
-template <class... Terms>
-template <class F>
-void Query<Terms...>::parallelEach(F&& f) const
-{
-    forSegmentsParallel([&](const Match& match, uint32_t segment, uint32_t) {
-        if constexpr (kChangedCount > 0) {
-            callChanged(f, match, segment);
-        } else {
-            const uint32_t rows = match.archetype->segmentRows();
-            const uint32_t first = segment * rows;
-            const uint32_t count = std::min(rows, match.archetype->count() - first);
-            mark(match, segment, 0, count);
-            callRun(f, match, first, count);
-        }
-    });
 }
 
 } // namespace penumbra::ecs

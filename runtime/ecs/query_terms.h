@@ -9,6 +9,9 @@
 //   Changed<T>         -                  -                      passes rows (each) or segments in
 //                                                                which any Changed<> was written
 //                                                                after the query's since()
+//   WithDisabled       -                  -                      disabled entities (World::
+//                                                                setEnabled) too; else they are
+//                                                                skipped
 // A component split into lanes is loaded into a T before the call and stored after it.
 #pragma once
 
@@ -27,6 +30,7 @@ template <class T>
 struct Without {};
 template <class T>
 struct Changed {};
+struct WithDisabled {};
 
 // The columns of one lane-split component in one segment: lane[0][i] is x of row i.
 template <class T>
@@ -37,7 +41,7 @@ struct Lanes {
     [[nodiscard]] Element* operator[](size_t i) const { return lane[i]; }
 };
 
-enum class TermKind { data, with, without, changed };
+enum class TermKind { data, with, without, changed, option };
 
 template <class T>
 struct TermTraits { // T, const T
@@ -63,6 +67,8 @@ template <class T>
 struct TermTraits<Without<T>> : FilterTraits<T, TermKind::without> {};
 template <class T>
 struct TermTraits<Changed<T>> : FilterTraits<T, TermKind::changed> {};
+template <>
+struct TermTraits<WithDisabled> : FilterTraits<WithDisabled, TermKind::option> {}; // no component
 
 template <class Term>
 inline constexpr bool kIsData = TermTraits<Term>::kKind == TermKind::data;

@@ -15,8 +15,11 @@ void RowChanges::resize(uint32_t segmentCount)
 void RowChanges::startFrame(uint32_t segment, uint64_t version)
 {
     uint64_t* fresh = m_fresh.data() + size_t{segment} * m_words;
-    std::copy_n(fresh, m_words, m_older.data() + size_t{segment} * m_words);
-    std::fill_n(fresh, m_words, 0);
+    uint64_t* older = m_older.data() + size_t{segment} * m_words;
+    for (uint32_t i = 0; i < m_words; ++i) { // few: library calls take longer
+        older[i] = fresh[i];
+        fresh[i] = 0;
+    }
     m_olderFrom[segment] = m_freshFrom[segment];
     m_freshFrom[segment] = version;
 }

@@ -1,5 +1,7 @@
 // Schedule::run(): phases, task graph, versions, and the sync point.
+#include "runtime/ecs/running_system.h"
 #include "runtime/ecs/schedule_node.h"
+#include "runtime/ecs/thread_order.h"
 
 #include <chrono>
 #include <tbb/task_arena.h>
@@ -11,8 +13,9 @@ namespace penumbra::ecs {
 // what counts as changed since its last run is then the same at any number of threads.
 void Schedule::runSystem(Node& node, Stamp base)
 {
-    const Stamp stamp{base.version + 1 + node.order, base.version};
+    const Stamp stamp{base.version + 1 + node.place, base.version};
     SystemContext context(m_world, node.commands, node.name, node.access, stamp, node.lastRun);
+    const RunningSystem running(node.name);
     const auto start = std::chrono::steady_clock::now();
     node.system(context);
     const std::chrono::duration<float, std::milli> time = std::chrono::steady_clock::now() - start;
@@ -22,6 +25,7 @@ void Schedule::runSystem(Node& node, Stamp base)
         node.times[node.runs % kTimingFrames] = time.count();
     ++node.runs;
     node.lastRun = stamp.version;
+    node.lastRows = context.rows();
 }
 
 void Schedule::runPhase(const Phase& phase, Stamp base)
@@ -38,11 +42,14 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
         return;
     }
 
+    ThreadOrder begin, end; // between systems, `waiting` tells
     tbb::task_group group;
     const std::function<void(uint32_t)> launch = [&](uint32_t index) {
         group.run([&, index] {
+            begin.acquire();
             Node& node = *m_systems[index];
             runSystem(node, base);
+            end.release();
             for (const uint32_t next : node.next)
                 if (m_systems[next]->waiting.fetch_sub(1, std::memory_order_acq_rel) == 1)
                     launch(next);
@@ -50,15 +57,20 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
     };
     for (const uint32_t index : phase.systems)
         m_systems[index]->waiting = static_cast<uint32_t>(m_systems[index]->previous.size());
+    begin.release();
     for (const uint32_t index : phase.systems)
         if (m_systems[index]->previous.empty())
             launch(index);
     group.wait();
+    end.acquire();
 }
 
 PlaybackStatistics Schedule::run()
 {
     m_world.assertStructural();
+    if (!m_namesChecked)
+        checkNames();
+    m_namesChecked = true;
     static_cast<void>(m_world.hierarchy()); // systems see it const: bring it up to date
     const Stamp base = m_world.m_stamp;
     m_world.m_inSystems = true;

@@ -2,6 +2,7 @@
 // declared (asserted in debug builds), look at structure, and record commands for later.
 #pragma once
 
+#include "runtime/assert.h"
 #include "runtime/ecs/command_buffer.h"
 #include "runtime/ecs/world.h"
 
@@ -41,7 +42,10 @@ public:
     [[nodiscard]] Query<Terms...> query() const
     {
         (check<Terms>(), ...);
-        return {m_world.cacheOf(Query<Terms...>::slot()), m_stamp, m_lastRun, m_world.m_iterating};
+        const Query<Terms...> query(m_world.cacheOf(Query<Terms...>::slot()), m_stamp, m_lastRun,
+                                    m_world.m_iterating);
+        __atomic_fetch_add(&m_rows, uint64_t{query.count()}, __ATOMIC_RELAXED);
+        return query;
     }
 
     [[nodiscard]] bool alive(Entity entity) const { return m_world.alive(entity); }
@@ -50,6 +54,7 @@ public:
     {
         return m_world.has<T>(entity);
     }
+    [[nodiscard]] bool isEnabled(Entity entity) const { return m_world.isEnabled(entity); }
     // As in World: T marks, const T does not.
     template <class T>
     [[nodiscard]] T* tryGet(Entity entity) const
@@ -88,14 +93,16 @@ public:
     [[nodiscard]] CommandBuffer& commands() const { return m_commands; }
     [[nodiscard]] uint64_t version() const { return m_stamp.version; }
     [[nodiscard]] uint64_t lastRun() const { return m_lastRun; } // version; 0 the first time
+    // In the queries made so far.
+    [[nodiscard]] uint64_t rows() const { return __atomic_load_n(&m_rows, __ATOMIC_RELAXED); }
 
 private:
     template <class Term>
     void check() const
     {
         using Traits = TermTraits<Term>;
-        [[maybe_unused]] const ComponentId id = componentId<typename Traits::Component>();
         if constexpr (Traits::kKind == TermKind::data || Traits::kKind == TermKind::changed) {
+            [[maybe_unused]] const ComponentId id = componentId<typename Traits::Component>();
             PENUMBRA_DEBUG_ASSERT(m_access.writes.test(id) ||
                                       (!kWrites<Term> && m_access.reads.test(id)),
                                   "system '{}' {} {} without declaring it", m_name,
@@ -109,6 +116,7 @@ private:
     const Access& m_access;
     Stamp m_stamp;
     uint64_t m_lastRun;
+    mutable uint64_t m_rows = 0; // several threads count
 };
 
 } // namespace penumbra::ecs

@@ -1,157 +1,126 @@
-#include "runtime/ecs/world.h"
+#include "runtime/ecs/world_index.h"
 
 #include "runtime/assert.h"
+#include "runtime/ecs/destroyed_log.h"
+#include "runtime/ecs/observer_table.h"
+
+#include <memory>
 
 namespace penumbra::ecs {
 
-World::World()
+World::World() : m_index(new Index)
 {
     static_cast<void>(archetypeOf(ComponentMask{}));
+#ifndef NDEBUG
+    rememberDestroyed(true);
+#endif
 }
 
-void World::failStale(Entity entity) const
+World::~World()
 {
-    const bool known = entity.index < m_entities.indexCount();
-    PENUMBRA_ASSERT(false, "entity {} is not alive; {}", toString(entity),
-                    entity.isNull()       ? "it is the null entity"
-                    : entity.isDeferred() ? "it is a command buffer's, real after playback"
-                    : known ? fmt::format("index {} is at generation {}", entity.index,
-                                          m_entities[entity].generation)
-                            : fmt::format("the world has {} indices", m_entities.indexCount()));
-    std::abort(); // not reached; the assert does not say so to the compiler
-}
-
-void World::failMissing(Entity entity, ComponentId id) const
-{
-    PENUMBRA_ASSERT(false, "entity {} has no {}; it has: {}", toString(entity),
-                    componentInfo(id).name, toString(components(entity)));
-    std::abort(); // as above
+    for (const Archetype* archetype : m_archetypes)
+        delete archetype;
+    delete m_index;
+    delete m_observers;
+    delete m_destroyed;
 }
 
 Archetype& World::archetypeOf(const ComponentMask& mask)
 {
-    Archetype*& archetype = m_byMask[mask];
+    Archetype*& archetype = m_index->byMask[mask];
     if (archetype == nullptr) {
-        const auto index = static_cast<uint32_t>(m_archetypes.size());
-        archetype = m_archetypes.emplace_back(std::make_unique<Archetype>(index, mask)).get();
+        m_archetypes.reserve(m_archetypes.size() + 1);
+        archetype = new Archetype(static_cast<uint32_t>(m_archetypes.size()), mask);
+        m_archetypes.push_back(archetype);
     }
     return *archetype;
 }
 
-Archetype& World::archetypeOf(const ComponentSet& set)
+Archetype& World::findArchetype(const ComponentSet& set)
 {
     if (set.slot >= m_bySet.size())
         m_bySet.resize(set.slot + 1);
-    Archetype*& archetype = m_bySet[set.slot];
-    if (archetype == nullptr)
-        archetype = &archetypeOf(set.mask);
-    return *archetype;
+    return *(m_bySet[set.slot] = &archetypeOf(set.mask));
 }
 
 const QueryCache& World::cacheOf(uint32_t querySlot) const
 {
-    const std::lock_guard lock(m_queryMutex);
-    if (querySlot >= m_queries.size())
-        m_queries.resize(querySlot + 1);
-    std::unique_ptr<QueryCache>& cache = m_queries[querySlot];
-    if (!cache)
-        cache = std::make_unique<QueryCache>(queryTerms(querySlot));
-    cache->extend(m_archetypes);
+    PENUMBRA_ASSERT(querySlot < kQueryPages * kQueriesPerPage, "{} kinds of query", querySlot);
+    auto& page = m_index->queries[querySlot / kQueriesPerPage];
+    const uint32_t at = querySlot % kQueriesPerPage;
+    if (const auto* known = page.load(std::memory_order_acquire))
+        if (const QueryCache* cache = known[at].load(std::memory_order_acquire))
+            if (cache->isCurrent(m_archetypes.size())) [[likely]]
+                return *cache;
+    const std::lock_guard lock(m_index->queryMutex);
+    if (page == nullptr)
+        page = new std::atomic<QueryCache*>[kQueriesPerPage] {};
+    std::atomic<QueryCache*>& cache = page[at];
+    if (cache == nullptr) {
+        auto made = std::make_unique<QueryCache>(queryTerms(querySlot));
+        made->extend(m_archetypes);
+        cache = made.release();
+    }
+    cache.load()->extend(m_archetypes);
     return *cache;
 }
 
-World::Place World::createIn(const ComponentSet& set)
+// With pages.
+void World::growRoom(Archetype& archetype, uint32_t more)
 {
-    assertStructural();
-    Archetype& archetype = archetypeOf(set);
-    const Entity entity = m_entities.allocate();
-    const uint32_t row = archetype.append({&entity, 1}, m_stamp);
-    EntityRecord& record = m_entities[entity];
-    record.archetype = archetype.index();
-    record.row = row;
-    return {&archetype, row};
+    const uint32_t rows = archetype.count() + more;
+    archetype.pages.reserve((rows + kPageRows - 1) >> kPageShift);
+    while (archetype.pages.size() << kPageShift < rows)
+        archetype.pages.push_back(m_entities.addPage(
+            &archetype, static_cast<uint32_t>(archetype.pages.size()) << kPageShift));
+    archetype.reserve(rows); // last: room is what it says
 }
 
-Archetype& World::createManyIn(const ComponentSet& set, std::span<Entity> out)
+void World::setPlaces(Archetype& archetype, uint32_t row)
+{
+    for (const Entity entity : archetype.entities().subspan(row)) {
+        m_entities.setPlace(entity, archetype.pages[row >> kPageShift], row);
+        ++row;
+    }
+}
+
+Archetype& World::roomFor(const ComponentSet& set, size_t count)
 {
     assertStructural();
     Archetype& archetype = archetypeOf(set);
-    m_entities.reserveMore(out.size());
-    for (Entity& entity : out)
-        entity = m_entities.allocate();
-    uint32_t row = archetype.append(out, m_stamp);
-    for (const Entity entity : out) {
-        m_entities[entity].archetype = archetype.index();
-        m_entities[entity].row = row++;
-    }
+    makeRoom(archetype, static_cast<uint32_t>(count));
+    m_entities.reserve(count);
+    if (set.mask.test(componentId<Parent>()))
+        m_hierarchy.makeRoom(m_entities.indexCount() + count);
     return archetype;
 }
 
-void World::takeRowOut(Archetype& archetype, uint32_t row)
+void World::appendNew(Archetype& archetype, std::span<Entity> out)
 {
-    if (const Entity moved = archetype.removeRow(row, m_stamp); !moved.isNull())
-        m_entities[moved].row = row;
+    m_entities.allocateMany(out, archetype.pages, archetype.count());
+    archetype.append(out, m_stamp);
 }
 
-World::Place World::move(Entity entity, Archetype& to)
+// What setting a parent needs, before anything changes: both alive, room for the links.
+void World::checkParent(Entity child, Entity parent)
 {
-    const Place from = place(entity);
-    const uint32_t row = to.append({&entity, 1}, m_stamp);
-    to.copyRow(row, *from.archetype, from.row);
-    takeRowOut(*from.archetype, from.row);
-    m_entities[entity].archetype = to.index();
-    m_entities[entity].row = row;
-    return {&to, row};
-}
-
-World::Place World::addSet(Entity entity, const ComponentSet& set)
-{
-    assertStructural();
-    const Place from = place(entity);
-    std::vector<Archetype*>& edges = from.archetype->withSet;
-    if (set.slot >= edges.size())
-        edges.resize(set.slot + 1);
-    if (edges[set.slot] == nullptr)
-        edges[set.slot] = &archetypeOf(from.archetype->mask() | set.mask);
-    if (edges[set.slot] != from.archetype)
-        return move(entity, *edges[set.slot]);
-    set.mask.forEach([&](ComponentId id) {
-        if (const int32_t column = from.archetype->columnOf(id); column >= 0)
-            from.archetype->markRow(column, from.row, m_stamp);
-    });
-    return from;
-}
-
-void World::removeSet(Entity entity, const ComponentSet& set)
-{
-    assertStructural();
-    const Place from = place(entity);
-    std::vector<Archetype*>& edges = from.archetype->withoutSet;
-    if (set.slot >= edges.size())
-        edges.resize(set.slot + 1);
-    if (edges[set.slot] == nullptr)
-        edges[set.slot] = &archetypeOf(from.archetype->mask() - set.mask);
-    if (set.mask.test(componentId<Parent>()))
-        m_hierarchy.detach(entity);
-    if (edges[set.slot] != from.archetype)
-        move(entity, *edges[set.slot]);
+    assertStructural(child);
+    if (!child.isNull())
+        static_cast<void>(place(child));
+    static_cast<void>(place(parent));
+    m_hierarchy.makeRoom(m_entities.indexCount() + size_t{1});
 }
 
 void World::attachOrFail(Entity child, Entity parent)
 {
-    assertStructural();
-    static_cast<void>(place(child));
-    static_cast<void>(place(parent));
     const bool attached = m_hierarchy.attach(child, parent);
-    PENUMBRA_ASSERT(attached, "{} under {} closes a cycle; setParent() tells", toString(child),
-                    toString(parent));
+    PENUMBRA_ASSERT(attached, "{} under {} closes a cycle; setParent() tells", describe(child),
+                    describe(parent));
 }
 
 bool World::setParent(Entity child, Entity parent)
 {
-    assertStructural();
-    static_cast<void>(place(child));
-    static_cast<void>(place(parent));
+    checkParent(child, parent);
     if (m_hierarchy.isWithin(parent, child))
         return false;
     add(child, Parent{parent});
@@ -161,38 +130,8 @@ bool World::setParent(Entity child, Entity parent)
 const Hierarchy& World::hierarchy()
 {
     assertOutsideSystems();
-    m_hierarchy.refresh();
+    m_hierarchy.refresh(m_entities);
     return m_hierarchy;
-}
-
-void World::destroyLeaf(Entity entity)
-{
-    const Place at = place(entity);
-    takeRowOut(*at.archetype, at.row);
-    m_entities.release(entity);
-}
-
-void World::destroy(Entity entity)
-{
-    assertStructural();
-    if (!m_hierarchy.contains(entity))
-        return destroyLeaf(entity);
-    m_doomed.clear();
-    m_hierarchy.collect(entity, m_doomed);
-    while (!m_doomed.empty()) { // from the leaves up: each is a leaf when its turn comes
-        m_hierarchy.detach(m_doomed.back());
-        destroyLeaf(m_doomed.back());
-        m_doomed.pop_back();
-    }
-}
-
-void World::destroyMany(std::span<const Entity> entities)
-{
-    for (const Entity entity : entities)
-        static_cast<void>(place(entity));
-    for (const Entity entity : entities)
-        if (alive(entity)) // else it went with its parent
-            destroy(entity);
 }
 
 ComponentMask World::components(Entity entity) const
@@ -203,8 +142,17 @@ ComponentMask World::components(Entity entity) const
 void World::trim()
 {
     assertStructural();
-    for (const auto& archetype : m_archetypes)
+    for (Archetype* archetype : m_archetypes) {
         archetype->trim();
+        std::vector<uint32_t>& pages = archetype->pages;
+        for (; (pages.size() << kPageShift) >= archetype->count() + size_t{kPageRows};
+             pages.pop_back())
+            m_entities.removePage(pages.back());
+    }
+    for (auto* scratch : {&m_mergeSlots, &m_leaving}) {
+        scratch->clear();
+        scratch->shrink_to_fit();
+    }
 }
 
 } // namespace penumbra::ecs

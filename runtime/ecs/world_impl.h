@@ -1,29 +1,37 @@
-// The templates of world.h, which includes this file.
+// The templates of world.h, which includes this file: structure. Values: world_values.h.
 #pragma once
 
-#include "runtime/assert.h"
+#include "runtime/ecs/query_down.h"
 #include "runtime/ecs/world.h"
 
 namespace penumbra::ecs {
 
-inline void World::assertStructural() const
+inline void World::assertStructural([[maybe_unused]] Entity entity) const
 {
-    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "structural change in a system: use context.commands()");
-    PENUMBRA_DEBUG_ASSERT(m_iterating == 0,
-                          "structural change during {} iteration(s): use a CommandBuffer",
-                          m_iterating.load());
+#ifndef NDEBUG
+    if (m_inSystems || __atomic_load_n(&m_iterating, __ATOMIC_RELAXED) != 0 || isTelling())
+        [[unlikely]]
+        failStructural(entity);
+#endif
 }
 
 inline void World::assertOutsideSystems() const
 {
-    PENUMBRA_DEBUG_ASSERT(!m_inSystems, "World used inside a system: go through SystemContext");
+#ifndef NDEBUG
+    if (m_inSystems) [[unlikely]]
+        failInSystem();
+#endif
 }
+
+[[noreturn]] void failBulkCount(std::string_view component, size_t values, size_t entities);
 
 // createMany() arguments: T repeats one value, std::span<const T> gives one each.
 template <class T>
 struct BulkArgument {
     using Component = T;
     static const void* values(const T& value, size_t) { return &value; }
+    static const void* at(const T& value, size_t) { return &value; }
+    static const T& one(const T& value, size_t) { return value; }
     static constexpr size_t kStride = 0;
 };
 template <class T, size_t kExtent>
@@ -31,34 +39,93 @@ struct BulkArgument<std::span<T, kExtent>> {
     using Component = std::remove_const_t<T>;
     static const void* values(std::span<T, kExtent> values, size_t count)
     {
-        PENUMBRA_ASSERT(values.size() == count, "{} values of {} for {} entities", values.size(),
-                        ComponentTraits<Component>::kName, count);
+        if (values.size() != count) [[unlikely]]
+            failBulkCount(ComponentTraits<Component>::kName, values.size(), count);
         return values.data();
     }
+    static const void* at(std::span<T, kExtent> values, size_t i) { return values.data() + i; }
+    static const T& one(std::span<T, kExtent> values, size_t i) { return values[i]; }
     static constexpr size_t kStride = sizeof(T);
 };
 
-template <class T>
-void World::store(const Place& place, [[maybe_unused]] const T& value)
+// Inline: a row is written in less time than a call through here takes.
+inline World::NewRow World::createIn(const ComponentSet& set)
 {
-    if constexpr (!kIsTag<T>) {
-        const int32_t column = place.archetype->columnOf(componentId<T>());
-        for (uint32_t lane = 0; lane < kLaneCount<T>; ++lane)
-            std::memcpy(place.archetype->at(column + lane, place.row),
-                        reinterpret_cast<const std::byte*>(&value) + lane * sizeof(Lane<T>),
-                        sizeof(Lane<T>));
+    assertStructural();
+    Archetype& archetype = archetypeOf(set);
+    makeRoom(archetype, 1);
+    m_entities.reserve(1);
+    const Entity entity = m_entities.allocate();
+    const uint32_t row = archetype.append(entity, m_stamp);
+    m_entities.setPlace(entity, archetype.pages[row >> kPageShift], row);
+    return {&archetype, row, entity};
+}
+
+// A value on its way into a row, as a copy: the caller's may lie in this world, in a row that is
+// about to move. Copying may throw, what follows may not.
+template <class T>
+struct Incoming {
+    T value;
+
+    // `over`: the row holds a value already.
+    void store(const Archetype::RowPlace& place, [[maybe_unused]] bool over)
+    {
+        if constexpr (!kIsTag<T>) {
+            // Known since the archetype was looked for.
+            const auto column = static_cast<size_t>(place.columnOf[kKnownId<T> - 1]);
+            if constexpr (kIsPlain<T>) {
+                [&]<size_t... lane>(std::index_sequence<lane...>)
+                {
+                    (std::memcpy(place.block + place.columns[column + lane].offset +
+                                     place.row * sizeof(Lane<T>),
+                                 reinterpret_cast<const std::byte*>(&value) +
+                                     lane * sizeof(Lane<T>),
+                                 sizeof(Lane<T>)),
+                     ...);
+                }
+                (std::make_index_sequence<kLaneCount<T>>());
+            } else {
+                T* at =
+                    reinterpret_cast<T*>(place.block + place.columns[column].offset) + place.row;
+                if (over)
+                    at->~T();
+                new (at) T(static_cast<T&&>(value));
+            }
+        }
     }
+};
+
+template <class... Ts>
+Entity parentIn(const Ts&... values) // null: none of them is a Parent
+{
+    Entity parent;
+    [[maybe_unused]] const auto look = [&](const auto& value) {
+        if constexpr (std::is_same_v<decltype(value), const Parent&>)
+            parent = value.entity;
+    };
+    (look(values), ...);
+    return parent;
 }
 
 template <class... Ts>
-Entity World::create(const Ts&... values)
+Entity World::create(Ts&&... values)
 {
-    const Place place = createIn(componentSet<Ts...>());
-    const Entity entity = place.archetype->entities()[place.row];
-    (store(place, values), ...);
-    if constexpr ((std::is_same_v<Ts, Parent> || ...))
-        attachOrFail(entity, std::get<const Parent&>(std::tie(values...)).entity);
-    return entity;
+    std::tuple<Incoming<std::remove_cvref_t<Ts>>...> incoming{
+        Incoming<std::remove_cvref_t<Ts>>{std::forward<Ts>(values)}...};
+    constexpr bool kHasParent = (std::is_same_v<std::remove_cvref_t<Ts>, Parent> || ...);
+    if constexpr (kHasParent)
+        checkParent({}, parentIn(values...));
+    const ComponentSet& set = componentSet<std::remove_cvref_t<Ts>...>();
+    const NewRow made = createIn(set);
+    if constexpr (sizeof...(Ts) > 0) {
+        const Archetype::RowPlace row = made.archetype->rowPlace(made.row);
+        (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).store(row, false), ...);
+    }
+    if constexpr (kHasParent)
+        attachOrFail(made.entity, parentIn(values...));
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&made.entity, 1}, {}, set.mask);
+    return made.entity;
 }
 
 template <class... Arguments>
@@ -66,156 +133,129 @@ void World::createMany(std::span<Entity> out, const Arguments&... arguments)
 {
     const auto count = static_cast<uint32_t>(out.size());
     Archetype& archetype =
-        createManyIn(componentSet<typename BulkArgument<Arguments>::Component...>(), out);
-    const uint32_t row = archetype.count() - count;
-    (archetype.fill(componentId<typename BulkArgument<Arguments>::Component>(), row, count,
-                    BulkArgument<Arguments>::values(arguments, count),
-                    BulkArgument<Arguments>::kStride),
-     ...);
+        roomFor(componentSet<typename BulkArgument<Arguments>::Component...>(), count);
+    const uint32_t row = archetype.count();
+    fillAll(archetype, row, count, arguments...);
+    appendNew(archetype, out);
     if constexpr ((std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> || ...))
         for (const Entity entity : out)
             attachOrFail(entity, value<Parent>(entity).entity);
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven(out, {}, archetype.mask());
+}
+
+// Values for the rows, which are within room and hold none. If a copy throws, none is left.
+template <class... Arguments>
+void World::fillAll(Archetype& archetype, [[maybe_unused]] uint32_t row,
+                    [[maybe_unused]] uint32_t count, const Arguments&... arguments)
+{
+    [[maybe_unused]] size_t filled = 0;
+    [[maybe_unused]] const auto fill = [&]<class Argument>(const Argument& argument) {
+        archetype.fill(componentId<typename BulkArgument<Argument>::Component>(), row, count,
+                       BulkArgument<Argument>::values(argument, count),
+                       BulkArgument<Argument>::kStride);
+        ++filled;
+    };
+    if constexpr ((kIsPlain<typename BulkArgument<Arguments>::Component> && ...)) {
+        (fill(arguments), ...);
+    } else {
+        try {
+            (fill(arguments), ...);
+        } catch (...) {
+            size_t i = 0;
+            const auto undo = [&]<class Component>() {
+                if constexpr (!kIsPlain<Component> && !kIsTag<Component>)
+                    if (i < filled)
+                        archetype.destroyValues(componentId<Component>(), row, count);
+                ++i;
+            };
+            (undo.template operator()<typename BulkArgument<Arguments>::Component>(), ...);
+            throw;
+        }
+    }
 }
 
 template <class... Ts>
-void World::add(Entity entity, const Ts&... values)
+void World::add(Entity entity, Ts&&... values)
 {
-    if constexpr ((std::is_same_v<Ts, Parent> || ...))
-        attachOrFail(entity, std::get<const Parent&>(std::tie(values...)).entity);
-    const Place place = addSet(entity, componentSet<Ts...>());
-    (store(place, values), ...);
+    std::tuple<Incoming<std::remove_cvref_t<Ts>>...> incoming{
+        Incoming<std::remove_cvref_t<Ts>>{std::forward<Ts>(values)}...};
+    constexpr bool kHasParent = (std::is_same_v<std::remove_cvref_t<Ts>, Parent> || ...);
+    if constexpr (kHasParent)
+        checkParent(entity, parentIn(values...));
+    [[maybe_unused]] const ComponentMask before = place(entity).archetype->mask();
+    const ComponentSet& set = componentSet<std::remove_cvref_t<Ts>...>();
+    const Place place = addSet(entity, set);
+    if constexpr (sizeof...(Ts) > 0) {
+        const Archetype::RowPlace row = place.archetype->rowPlace(place.row);
+        (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).store(
+             row, !kIsPlain<std::remove_cvref_t<Ts>> &&
+                      before.test(componentId<std::remove_cvref_t<Ts>>())),
+         ...);
+    }
+    if constexpr (kHasParent)
+        attachOrFail(entity, parentIn(values...));
+    if (m_observers != nullptr) [[unlikely]]
+        tellGiven({&entity, 1}, before, set.mask);
 }
 
-template <class T>
-void World::set(Entity entity, const T& value)
+template <class... Arguments>
+void World::addMany(std::span<const Entity> entities, const Arguments&... arguments)
 {
-    assertOutsideSystems();
-    setStamped(entity, value, m_stamp);
+    static_assert((!std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> && ...),
+                  "parents go one by one: setParent()");
+    assertStructural();
+    (static_cast<void>(BulkArgument<Arguments>::values(arguments, entities.size())), ...);
+    const ComponentSet& set = componentSet<typename BulkArgument<Arguments>::Component...>();
+    ObserversWait observers(*this);
+    for (size_t done = 0; done < entities.size();) {
+        const size_t length = runLength(entities.subspan(done));
+        const auto run = entities.subspan(done, length);
+        Archetype& from = *place(run[0]).archetype;
+        Archetype& to = withSet(from, set);
+        const bool plainAndNew =
+            (kIsPlain<typename BulkArgument<Arguments>::Component> && ...) && &to != &from;
+        if (plainAndNew) {
+            const uint32_t row = moveRun(run, from, to);
+            (to.fill(componentId<typename BulkArgument<Arguments>::Component>(), row,
+                     static_cast<uint32_t>(length), BulkArgument<Arguments>::at(arguments, done),
+                     BulkArgument<Arguments>::kStride),
+             ...);
+            if (m_observers != nullptr) [[unlikely]]
+                tellGiven(run, from.mask(), set.mask);
+        } else {
+            for (size_t i = 0; i < length; ++i)
+                add(run[i], BulkArgument<Arguments>::one(arguments, done + i)...);
+        }
+        done += length;
+    }
+    observers.finish();
 }
 
-template <class T>
-void World::setStamped(Entity entity, const T& value, Stamp stamp) const
+template <class... Ts>
+void World::removeMany(std::span<const Entity> entities)
 {
-    static_assert(!std::is_same_v<T, Parent>, "setParent() changes parents");
-    static_assert(!kIsTag<T>, "a tag has no value");
-    const Place at = place(entity);
-    const int32_t column = at.archetype->columnOf(componentId<T>());
-    if (column < 0) [[unlikely]]
-        failMissing(entity, componentId<T>());
-    at.archetype->markRow(column, at.row, stamp);
-    store(at, value);
+    static_assert((!std::is_same_v<Ts, Parent> && ...), "parents go one by one: clearParent()");
+    assertStructural();
+    const ComponentSet& set = componentSet<Ts...>();
+    ObserversWait observers(*this);
+    for (size_t done = 0; done < entities.size();) {
+        const auto run = entities.subspan(done, runLength(entities.subspan(done)));
+        Archetype& from = *place(run[0]).archetype;
+        if (Archetype& to = withoutSet(from, set); &to != &from) {
+            if (m_observers != nullptr) [[unlikely]]
+                tellRemoved(run, set.mask);
+            moveRun(run, from, to);
+        }
+        done += run.size();
+    }
+    observers.finish();
 }
 
 template <class... Ts>
 void World::remove(Entity entity)
 {
     removeSet(entity, componentSet<Ts...>());
-}
-
-template <class T>
-bool World::has(Entity entity) const
-{
-    return place(entity).archetype->mask().test(componentId<T>());
-}
-
-template <class T>
-T* World::find(Entity entity, Stamp stamp) const
-{
-    using Component = std::remove_const_t<T>;
-    static_assert(!kIsTag<Component>, "a tag has no value: has()");
-    static_assert(kLaneCount<Component> == 1,
-                  "split into lanes, it has no address: value(), set()");
-    static_assert(std::is_const_v<T> || !std::is_same_v<T, Parent>, "setParent() changes parents");
-    const Place at = place(entity);
-    const int32_t column = at.archetype->columnOf(componentId<Component>());
-    if (column < 0)
-        return nullptr;
-    if constexpr (!std::is_const_v<T>)
-        at.archetype->markRow(column, at.row, stamp);
-    return reinterpret_cast<T*>(at.archetype->at(column, at.row));
-}
-
-template <class T>
-T* World::tryGet(Entity entity)
-{
-    assertOutsideSystems();
-    return find<T>(entity, m_stamp);
-}
-
-template <class T>
-const T* World::tryGet(Entity entity) const
-{
-    assertOutsideSystems();
-    return find<const T>(entity, m_stamp);
-}
-
-template <class T>
-T& World::get(Entity entity)
-{
-    T* value = tryGet<T>(entity);
-    if (value == nullptr) [[unlikely]]
-        failMissing(entity, componentId<std::remove_const_t<T>>());
-    return *value;
-}
-
-template <class T>
-const T& World::get(Entity entity) const
-{
-    const T* value = tryGet<T>(entity);
-    if (value == nullptr) [[unlikely]]
-        failMissing(entity, componentId<std::remove_const_t<T>>());
-    return *value;
-}
-
-template <class T>
-T World::value(Entity entity) const
-{
-    const Place at = place(entity);
-    if (at.archetype->columnOf(componentId<T>()) < 0) [[unlikely]]
-        failMissing(entity, componentId<T>());
-    T result;
-    at.archetype->read(componentId<T>(), at.row, &result);
-    return result;
-}
-
-template <class T>
-bool World::hasSingleton() const
-{
-    const ComponentId id = componentId<T>();
-    return id < m_singletons.size() && alive(m_singletons[id]);
-}
-
-template <class T>
-Entity World::setSingleton(const T& value)
-{
-    const ComponentId id = componentId<T>();
-    if (hasSingleton<T>()) {
-        set(m_singletons[id], value);
-        return m_singletons[id];
-    }
-    if (id >= m_singletons.size())
-        m_singletons.resize(id + 1);
-    return m_singletons[id] = create(value);
-}
-
-template <class T>
-Entity World::singletonEntity() const
-{
-    const ComponentId id = componentId<T>();
-    PENUMBRA_ASSERT(hasSingleton<T>(), "no singleton {} in this world", componentInfo(id).name);
-    return m_singletons[id];
-}
-
-template <class T>
-T& World::singleton()
-{
-    return get<T>(singletonEntity<std::remove_const_t<T>>());
-}
-
-template <class T>
-const T& World::singleton() const
-{
-    return get<const T>(singletonEntity<std::remove_const_t<T>>());
 }
 
 template <class... Terms>

@@ -1,6 +1,10 @@
 // What World tells about itself: dump() and statistics().
-#include "runtime/ecs/world.h"
+#include "runtime/ecs/debug_hooks.h"
+#include "runtime/ecs/world_index.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <iterator>
@@ -18,10 +22,21 @@ std::string wordText(uint32_t word)
     return size > 1e-6f && size < 1e9f ? fmt::format("{:.6g}", number) : fmt::format("{}", word);
 }
 
-std::string valueText(const std::vector<std::byte>& value)
+std::string valueText(ComponentId id, const std::vector<std::byte>& value)
 {
-    std::string text;
+    const DebugHooks& hooks = debugHooks();
+    std::string text = hooks.value != nullptr ? hooks.value(id, value.data()) : std::string();
+    if (!text.empty())
+        return text;
+    const std::span<const uint32_t> entities = componentInfo(id).entityFields;
     for (size_t at = 0; at < value.size(); at += 4) {
+        if (std::find(entities.begin(), entities.end(), at) != entities.end()) {
+            Entity entity;
+            std::memcpy(&entity, value.data() + at, sizeof(entity));
+            text += fmt::format("{}{}", at == 0 ? "" : " ", toString(entity));
+            at += sizeof(entity) - 4;
+            continue;
+        }
         uint32_t word = 0;
         std::memcpy(&word, value.data() + at, std::min<size_t>(4, value.size() - at));
         text += at == 0 ? "" : " ";
@@ -35,8 +50,11 @@ std::string valueText(const std::vector<std::byte>& value)
 std::string World::dump(Entity entity) const
 {
     const Place at = place(entity);
-    std::string text = fmt::format("entity {}, archetype {}, row {}\n", toString(entity),
-                                   at.archetype->index(), at.row);
+    std::string text =
+        fmt::format("entity {}, {}archetype {}, row {}\n", describe(entity),
+                    isEnabled(entity) ? "" : "disabled, ", at.archetype->index(), at.row);
+    if (const Entity parent = m_hierarchy.parentOf(entity); !parent.isNull())
+        text += fmt::format("  parent {}\n", describe(parent));
     at.archetype->mask().forEach([&](ComponentId id) {
         const ComponentInfo& info = componentInfo(id);
         const int32_t column = at.archetype->columnOf(id);
@@ -44,16 +62,18 @@ std::string World::dump(Entity entity) const
             text += fmt::format("  {} (tag)\n", info.name);
             return;
         }
+        if (info.life != nullptr) {
+            text += fmt::format("  {} ({} bytes, not plain data)\n", info.name, info.bytes);
+            return;
+        }
         std::vector<std::byte> value(info.bytes);
         at.archetype->read(id, at.row, value.data());
         const uint32_t segment = at.row >> at.archetype->segmentShift();
         text += fmt::format("  {} ({} bytes, version {}): {}\n", info.name, info.bytes,
-                            at.archetype->version(column, segment),
-                            id == componentId<Parent>() ? toString(m_hierarchy.parentOf(entity))
-                                                        : valueText(value));
+                            at.archetype->version(column, segment), valueText(id, value));
     });
     for (const Entity child : m_hierarchy.childrenOf(entity))
-        text += fmt::format("  child {}\n", toString(child));
+        text += fmt::format("  child {}\n", describe(child));
     return text;
 }
 
@@ -62,16 +82,56 @@ WorldStatistics World::statistics() const
     WorldStatistics all;
     all.entities = count();
     all.archetypes = static_cast<uint32_t>(m_archetypes.size());
-    for (const auto& archetype : m_archetypes) {
-        all.segments += archetype->segmentCount();
-        all.valueBytes += archetype->valueBytes();
-        all.blockBytes += archetype->blockBytes();
-        all.bookBytes += archetype->bookBytes();
+    for (const Archetype* archetype : m_archetypes) {
+        const ArchetypeStatistics one{
+            .components = archetype->mask(),
+            .rows = archetype->count(),
+            .disabledRows = archetype->disabled().count(),
+            .segments = archetype->segmentCount(),
+            .valueBytes = archetype->valueBytes(),
+            .blockBytes = archetype->blockBytes(),
+            .bookBytes = archetype->bookBytes(),
+        };
+        all.disabled += one.disabledRows;
+        all.segments += one.segments;
+        all.valueBytes += one.valueBytes;
+        all.blockBytes += one.blockBytes;
+        all.bookBytes += one.bookBytes;
+        all.perArchetype.push_back(one);
     }
-    all.bookBytes += m_entities.bytes() + m_hierarchy.bytes();
-    for (const auto& query : m_queries)
-        all.bookBytes += query ? query->bytes() : 0;
+    all.bookBytes += sizeof(*this) + sizeof(*m_index) + m_entities.bytes() + m_hierarchy.bytes();
+    all.bookBytes += m_archetypes.capacity() * sizeof(Archetype*) +
+                     m_bySet.capacity() * sizeof(Archetype*) +
+                     (m_singletons.capacity() + m_doomed.capacity()) * sizeof(Entity) +
+                     (m_mergeSlots.capacity() + m_leaving.capacity()) * sizeof(uint32_t);
+    // A node of the map: key, value, link, hash; and its bucket.
+    all.bookBytes += m_index->byMask.size() * (sizeof(ComponentMask) + 3 * sizeof(void*)) +
+                     m_index->byMask.bucket_count() * sizeof(void*);
+    for (const auto& page : m_index->queries) {
+        if (page == nullptr)
+            continue;
+        all.bookBytes += kQueriesPerPage * sizeof(void*);
+        for (uint32_t i = 0; i < kQueriesPerPage; ++i)
+            if (const QueryCache* cache = page[i])
+                all.bookBytes += sizeof(*cache) + cache->bytes();
+    }
     return all;
+}
+
+std::string toString(const WorldStatistics& statistics)
+{
+    const auto kib = [](size_t bytes) { return (bytes + 1023) / 1024; };
+    std::string text = fmt::format(
+        "{} entities ({} disabled), {} archetypes, {} segments; KiB: {} values, {} blocks, {} "
+        "books\n{:>9} {:>9} {:>9} {:>9} {:>9}  components\n",
+        statistics.entities, statistics.disabled, statistics.archetypes, statistics.segments,
+        kib(statistics.valueBytes), kib(statistics.blockBytes), kib(statistics.bookBytes), "rows",
+        "disabled", "values", "blocks", "books");
+    for (const ArchetypeStatistics& one : statistics.perArchetype)
+        text += fmt::format("{:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", one.rows, one.disabledRows,
+                            kib(one.valueBytes), kib(one.blockBytes), kib(one.bookBytes),
+                            one.components.isEmpty() ? "-" : toString(one.components));
+    return text;
 }
 
 } // namespace penumbra::ecs

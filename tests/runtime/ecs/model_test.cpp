@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <random>
@@ -14,7 +16,8 @@ namespace penumbra::ecs {
 
 namespace {
 
-constexpr uint32_t kOperations = 200000;
+// PENUMBRA_MODEL_OPERATIONS overrides; ten million take minutes.
+constexpr uint64_t kOperations = 150000;
 constexpr uint32_t kMostEntities = 1500;
 
 struct ModelEntity {
@@ -94,6 +97,8 @@ struct Driver {
     void create();
     void createMany();
     void destroy();
+    void changeMany();
+    void walkDown();
     void change(Entity entity);
     void deferred();
     void system();
@@ -162,6 +167,52 @@ void Driver::destroy()
                 modelDestroy(entity);
     }
     refreshPool();
+}
+
+// Distinct entities, in runs of one archetype or not.
+void Driver::changeMany()
+{
+    std::vector<Entity> some = pool;
+    if (chance(50))
+        std::shuffle(some.begin(), some.end(), random);
+    some.resize(std::min<size_t>(some.size(), below(60)));
+    if (chance(30) && !some.empty()) { // one archetype: like a system's result
+        const ComponentMask mask = world.components(some[0]);
+        std::erase_if(some, [&](Entity entity) { return !(world.components(entity) == mask); });
+    }
+    if (chance(50)) {
+        std::vector<Position> positions(some.size());
+        for (Position& p : positions)
+            p = position();
+        const Health h{below(1000)};
+        world.addMany(some, std::span<const Position>(positions), h, Frozen{});
+        for (size_t i = 0; i < some.size(); ++i) {
+            put(some[i], positions[i]).frozen = true;
+            put(some[i], h);
+        }
+    } else {
+        world.removeMany<Position, Frozen>(some);
+        for (const Entity entity : some) {
+            model.at(entity).position.reset();
+            model.at(entity).frozen = false;
+        }
+    }
+}
+
+// Each row of the hierarchy that has a Position gets its depth along parents with one.
+void Driver::walkDown()
+{
+    world.query<Position>().eachDown(
+        world.hierarchy(), [&](Entity entity, Position& p, const Position* parent) {
+            p.z = parent != nullptr ? parent->z + 1 : 0;
+            const std::optional<Entity> above = model.at(entity).parent;
+            const bool has = above && model.at(*above).position;
+            ASSERT_EQ(parent != nullptr, has);
+            if (has) {
+                ASSERT_EQ(*parent, *model.at(*above).position); // the model's is done already
+            }
+            put(entity, p);
+        });
 }
 
 void Driver::change(Entity entity)
@@ -241,7 +292,7 @@ void Driver::deferred()
         std::optional<Position> position;
         std::optional<Entity> parent; // living, or dead
     };
-    std::vector<CommandBuffer> buffers{CommandBuffer(1), CommandBuffer(2), CommandBuffer(3)};
+    std::array<CommandBuffer, 3> buffers{CommandBuffer(1), CommandBuffer(2), CommandBuffer(3)};
     std::vector<New> created;
     std::set<Entity, decltype(&before)> destroyed(&before);
     std::vector<Entity> firstTouch;
@@ -453,8 +504,11 @@ void Driver::checkChanges(uint64_t since)
 
 TEST(Model, WorldBehavesLikeAMap)
 {
+    const char* const given = std::getenv("PENUMBRA_MODEL_OPERATIONS");
+    const uint64_t operations = given != nullptr ? std::stoull(given) : kOperations;
+    const uint64_t checkEvery = std::clamp<uint64_t>(operations / 200, 997, 99991);
     Driver driver;
-    for (uint32_t i = 0; i < kOperations; ++i) {
+    for (uint64_t i = 0; i < operations; ++i) {
         const uint32_t kind = driver.below(1000);
         if (driver.pool.empty() || (kind < 250 && driver.pool.size() < kMostEntities))
             driver.create();
@@ -462,15 +516,19 @@ TEST(Model, WorldBehavesLikeAMap)
             driver.createMany();
         else if (kind < 270)
             driver.destroy();
-        else if (kind < 280)
+        else if (kind < 275)
             driver.deferred();
-        else if (kind < 281)
+        else if (kind < 276)
             driver.system();
+        else if (kind < 280)
+            driver.changeMany();
+        else if (kind < 281)
+            driver.walkDown();
         else
             driver.change(driver.any());
         if (kind >= 990)
             driver.world.advance();
-        if (i % 997 == 0) {
+        if (i % checkEvery == 0) {
             driver.checkAll();
             const uint64_t version = driver.world.version();
             driver.checkChanges(version - std::min<uint64_t>(version, 1 + driver.below(12)));

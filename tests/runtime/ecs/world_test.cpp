@@ -87,6 +87,24 @@ TEST(World, AddAndRemoveKeepTheOtherValues)
     EXPECT_EXIT(world.set(b, Velocity{}), testing::ExitedWithCode(3), "has no test.Velocity");
 }
 
+// Values may come from the world itself, whose blocks grow and whose rows move meanwhile.
+TEST(World, CopiesItsOwnValues)
+{
+    World world;
+    const Entity first = world.create(Position{1, 2, 3}, Health{4});
+    std::vector<Entity> all{first};
+    for (uint32_t i = 0; i < 10000; ++i)
+        all.push_back(
+            world.create(world.get<const Position>(first), world.get<const Health>(first)));
+    for (const Entity entity : all)
+        ASSERT_EQ(world.get<const Position>(entity), (Position{1, 2, 3}));
+    const Entity last = all.back();
+    world.set(last, Health{9});
+    const Entity other = world.create(Velocity{});
+    world.add(other, world.get<const Health>(last));
+    EXPECT_EQ(world.get<const Health>(other).points, 9u);
+}
+
 TEST(World, ReusesIndicesWithNewGenerations)
 {
     World world;
@@ -139,7 +157,7 @@ TEST(World, TellsWhatItHolds)
     EXPECT_NE(text.find("entity 1#1"), std::string::npos) << text;
     EXPECT_NE(text.find("test.Position (12 bytes, version 1): 1.5 0 0"), std::string::npos) << text;
     EXPECT_NE(text.find("test.Frozen (tag)"), std::string::npos) << text;
-    EXPECT_NE(text.find("): 0#1"), std::string::npos) << text;
+    EXPECT_NE(text.find("): entity 0#1"), std::string::npos) << text;
     EXPECT_NE(world.dump(parent).find("child 1#1"), std::string::npos);
 
     const WorldStatistics statistics = world.statistics();
@@ -156,7 +174,7 @@ TEST(World, RefusesStructuralChangeWhileIterating)
     const auto breakIt = [&] {
         world.query<Health>().each([&](Health&) { world.destroy(entity); });
     };
-    EXPECT_EXIT(breakIt(), testing::ExitedWithCode(3), "structural change during 1 iteration");
+    EXPECT_EXIT(breakIt(), testing::ExitedWithCode(3), "structural change of .* during 1 iteration");
 }
 #endif
 

@@ -1,0 +1,156 @@
+// The templates of query.h, which includes this file: each() and the like.
+#pragma once
+
+#include "runtime/ecs/query_impl.h"
+
+namespace penumbra::ecs {
+
+template <class... Terms>
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsOf(const Match& match, uint32_t segment, Visit&& visit) const
+{
+    const Archetype& archetype = *match.archetype;
+    const uint32_t first = segment << archetype.segmentShift();
+    const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
+    if (kWhole || kSeesDisabled || archetype.disabled().count(segment) == 0) [[likely]]
+        return visit(Run{&match, segment, 0, rows});
+    archetype.disabled().eachEnabledRun(first, first + rows, [&](uint32_t row, uint32_t count) {
+        visit(Run{&match, segment, row - first, count});
+    });
+}
+
+template <class... Terms>
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRuns(Visit&& visit) const
+{
+    const IterationGuard guard(*m_iterating);
+    for (const Match& match : m_cache->matches())
+        for (uint32_t s = archetypePasses(match) ? 0 : kNone; s < match.archetype->segmentCount();
+             ++s)
+            if (segmentPasses(match, s))
+                forRunsOf<kWhole>(match, s, visit);
+}
+
+template <class... Terms>
+template <bool kWhole, class Visit>
+void Query<Terms...>::forRunsParallel(Visit&& visit) const
+{
+    // A task per segment, whatever its runs: they share change marks, which one thread writes.
+    struct Task {
+        Run segment;
+        uint32_t ordinal; // of its first run
+    };
+    std::vector<Task> tasks;
+    uint32_t ordinal = 0;
+    forRuns<true>([&](const Run& segment) {
+        tasks.push_back({segment, ordinal});
+        forRunsOf<kWhole>(*segment.match, segment.segment, [&](const Run&) { ++ordinal; });
+    });
+    const IterationGuard guard(*m_iterating);
+    const auto count = static_cast<uint32_t>(tasks.size());
+    const auto call = [&](uint32_t i) {
+        uint32_t at = tasks[i].ordinal;
+        forRunsOf<kWhole>(*tasks[i].segment.match, tasks[i].segment.segment,
+                          [&](const Run& run) { visit(run, at++); });
+    };
+    if (count >= kInlineSegments)
+        return parallelFor(count, call);
+    for (uint32_t i = 0; i < count; ++i)
+        call(i);
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::eachSegment(F&& f) const
+{
+    uint32_t ordinal = 0;
+    forRuns<false>([&](const Run& run) { callSegment(f, run, ordinal++); });
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::parallelEachSegment(F&& f) const
+{
+    forRunsParallel<false>([&](const Run& run, uint32_t ordinal) { callSegment(f, run, ordinal); });
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::each(F&& f) const
+{
+    if constexpr (kChangedCount > 0) {
+        forRuns<true>([&](const Run& run) { callChanged(f, run); });
+        return;
+    }
+    // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
+    const IterationGuard guard(*m_iterating);
+    for (const Match& match : m_cache->matches()) {
+        Archetype& archetype = *match.archetype;
+        if (skips(archetype)) [[unlikely]] {
+            for (uint32_t s = 0; s < archetype.segmentCount(); ++s)
+                forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+            continue;
+        }
+        const uint32_t rows = archetype.count();
+        if (rows == 0)
+            continue;
+        [&]<size_t... k>(std::index_sequence<k...>)
+        {
+            [[maybe_unused]] const auto markTerm = [&](bool writes, int16_t column) {
+                if (writes && column >= 0)
+                    archetype.markAll(static_cast<uint32_t>(column), m_stamp);
+            };
+            (markTerm(!std::is_const_v<typename Argument<k>::Access>, match.columns[k]), ...);
+        }
+        (DataIndices());
+        for (uint32_t row = 0; row < rows; row += archetype.blockRows())
+            callRun(f, match, row, std::min(archetype.blockRows(), rows - row));
+    }
+}
+
+template <class... Terms>
+template <class F>
+void Query<Terms...>::parallelEach(F&& f) const
+{
+    if constexpr (kChangedCount > 0) {
+        forRunsParallel<true>([&](const Run& run, uint32_t) { callChanged(f, run); });
+    } else {
+        // Several segments of a block in one task, where there are plenty: longer loops cost less.
+        struct Task {
+            const Match* match;
+            uint32_t segment; // the first
+            uint32_t count;
+        };
+        const IterationGuard guard(*m_iterating);
+        const uint32_t most = std::min(segmentCount() / 64 + 1, kBlockSegments);
+        std::vector<Task> tasks;
+        for (const Match& match : m_cache->matches())
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); s += tasks.back().count)
+                tasks.push_back({&match, s,
+                                 std::min(std::min(most, kBlockSegments - s % kBlockSegments),
+                                          match.archetype->segmentCount() - s)});
+        const auto run = [&](uint32_t i) {
+            const Task& task = tasks[i];
+            const Archetype& archetype = *task.match->archetype;
+            if (skips(archetype)) [[unlikely]] {
+                for (uint32_t s = 0; s < task.count; ++s)
+                    forRunsOf<false>(*task.match, task.segment + s,
+                                     [&](const Run& enabled) { callMarked(f, enabled); });
+                return;
+            }
+            const uint32_t rows = archetype.segmentRows();
+            const uint32_t first = task.segment * rows;
+            const uint32_t count = std::min(task.count * rows, archetype.count() - first);
+            for (uint32_t row = 0; !kReadOnly && row < count; row += rows)
+                mark(*task.match, task.segment + row / rows, 0, std::min(rows, count - row));
+            callRun(f, *task.match, first, count);
+        };
+        const auto count = static_cast<uint32_t>(tasks.size());
+        if (count >= kInlineSegments)
+            return parallelFor(count, run);
+        for (uint32_t i = 0; i < count; ++i)
+            run(i);
+    }
+}
+
+} // namespace penumbra::ecs

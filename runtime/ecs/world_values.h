@@ -1,0 +1,145 @@
+// The templates of world.h, which includes this file: values of components, singletons.
+#pragma once
+
+#include "runtime/ecs/world_impl.h"
+
+namespace penumbra::ecs {
+
+template <class T>
+void World::set(Entity entity, const T& value)
+{
+    assertOutsideSystems();
+    setStamped(entity, value, m_stamp);
+    if (m_observers != nullptr) [[unlikely]] {
+        const ComponentMask& mask = componentSet<T>().mask;
+        tellGiven({&entity, 1}, mask, mask);
+    }
+}
+
+template <class T>
+void World::setStamped(Entity entity, const T& value, Stamp stamp) const
+{
+    static_assert(!std::is_same_v<T, Parent>, "setParent() changes parents");
+    static_assert(!kIsTag<T>, "a tag has no value");
+    const Place at = place(entity);
+    const int32_t column = at.archetype->columnOf(componentId<T>());
+    if (column < 0) [[unlikely]]
+        failMissing(entity, componentId<T>());
+    Incoming<T> incoming{value};
+    at.archetype->markRow(column, at.row, stamp);
+    incoming.store(at.archetype->rowPlace(at.row), true);
+}
+
+template <class T>
+bool World::has(Entity entity) const
+{
+    return place(entity).archetype->mask().test(componentId<T>());
+}
+
+template <class T>
+T* World::find(Entity entity, Stamp stamp) const
+{
+    using Component = std::remove_const_t<T>;
+    static_assert(!kIsTag<Component>, "a tag has no value: has()");
+    static_assert(kLaneCount<Component> == 1,
+                  "split into lanes, it has no address: value(), set()");
+    static_assert(std::is_const_v<T> || !std::is_same_v<T, Parent>, "setParent() changes parents");
+    const Place at = place(entity);
+    const int32_t column = at.archetype->columnOf(componentId<Component>());
+    if (column < 0)
+        return nullptr;
+    if constexpr (!std::is_const_v<T>)
+        at.archetype->markRow(column, at.row, stamp);
+    return reinterpret_cast<T*>(at.archetype->at(column, at.row));
+}
+
+template <class T>
+T* World::tryGet(Entity entity)
+{
+    assertOutsideSystems();
+    return find<T>(entity, m_stamp);
+}
+
+template <class T>
+const T* World::tryGet(Entity entity) const
+{
+    assertOutsideSystems();
+    return find<const T>(entity, m_stamp);
+}
+
+template <class T>
+T& World::get(Entity entity)
+{
+    T* value = tryGet<T>(entity);
+    if (value == nullptr) [[unlikely]]
+        failMissing(entity, componentId<std::remove_const_t<T>>());
+    return *value;
+}
+
+template <class T>
+const T& World::get(Entity entity) const
+{
+    const T* value = tryGet<T>(entity);
+    if (value == nullptr) [[unlikely]]
+        failMissing(entity, componentId<std::remove_const_t<T>>());
+    return *value;
+}
+
+template <class T>
+T World::value(Entity entity) const
+{
+    const Place at = place(entity);
+    if (at.archetype->columnOf(componentId<T>()) < 0) [[unlikely]]
+        failMissing(entity, componentId<T>());
+    if constexpr (kIsPlain<T>) {
+        T result;
+        at.archetype->read(componentId<T>(), at.row, &result);
+        return result;
+    } else {
+        return *reinterpret_cast<const T*>(
+            at.archetype->at(at.archetype->columnOf(componentId<T>()), at.row));
+    }
+}
+
+template <class T>
+bool World::hasSingleton() const
+{
+    const ComponentId id = componentId<T>();
+    return id < m_singletons.size() && alive(m_singletons[id]);
+}
+
+template <class T>
+Entity World::setSingleton(const T& value)
+{
+    const ComponentId id = componentId<T>();
+    if (hasSingleton<T>()) {
+        set(m_singletons[id], value);
+        return m_singletons[id];
+    }
+    if (id >= m_singletons.size())
+        m_singletons.resize(id + 1);
+    return m_singletons[id] = create(value);
+}
+
+template <class T>
+Entity World::singletonEntity() const
+{
+    const ComponentId id = componentId<T>();
+    if (!hasSingleton<T>()) [[unlikely]]
+        failNoSingleton(id);
+    return m_singletons[id];
+}
+
+template <class T>
+T& World::singleton()
+{
+    return get<T>(singletonEntity<std::remove_const_t<T>>());
+}
+
+template <class T>
+const T& World::singleton() const
+{
+    return get<const T>(singletonEntity<std::remove_const_t<T>>());
+}
+
+} // namespace penumbra::ecs
