@@ -1,7 +1,6 @@
 // Schedule::run(): phases, task graph, versions, and the sync point.
 #include "runtime/ecs/running_system.h"
 #include "runtime/ecs/schedule_node.h"
-#include "runtime/ecs/thread_order.h"
 
 #include <chrono>
 #include <tbb/task_arena.h>
@@ -42,12 +41,14 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
         return;
     }
 
-    ThreadOrder begin, end; // between systems, `waiting` tells
+    ThreadOrder end;
     tbb::task_group group;
     const std::function<void(uint32_t)> launch = [&](uint32_t index) {
-        group.run([&, index] {
-            begin.acquire();
-            Node& node = *m_systems[index];
+        Node& launched = *m_systems[index];
+        launched.start.release();
+        group.run([&, at = &launched] {
+            Node& node = *at;
+            node.start.acquire();
             runSystem(node, base);
             end.release();
             for (const uint32_t next : node.next)
@@ -57,7 +58,6 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
     };
     for (const uint32_t index : phase.systems)
         m_systems[index]->waiting = static_cast<uint32_t>(m_systems[index]->previous.size());
-    begin.release();
     for (const uint32_t index : phase.systems)
         if (m_systems[index]->previous.empty())
             launch(index);

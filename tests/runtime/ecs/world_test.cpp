@@ -174,7 +174,8 @@ TEST(World, RefusesStructuralChangeWhileIterating)
     const auto breakIt = [&] {
         world.query<Health>().each([&](Health&) { world.destroy(entity); });
     };
-    EXPECT_EXIT(breakIt(), testing::ExitedWithCode(3), "structural change of .* during 1 iteration");
+    EXPECT_EXIT(breakIt(), testing::ExitedWithCode(3),
+                "structural change of .* during 1 iteration");
 }
 #endif
 
