@@ -1,10 +1,11 @@
 // Baking of visibility by line-space rasterisation: per direction of an antipodal set, the mesh is
 // rasterised once orthographically, keeping the nearest and farthest depth of every line; a sample
 // p is blocked along w if the farthest depth on its line lies beyond p.w, and along -w if the
-// nearest lies before it. Depths are interpolated between lines. One raster serves every sample of
-// every shell, inside the bounding sphere too, and every vertex. Outside the sphere a sample asks
+// nearest lies before it. Close to a surface, depths are interpolated between lines; beside it, and
+// where next to nothing is seen, the sample is traced by Embree. One raster serves every sample of
+// every shell, inside the bounding sphere too, and every vertex. Outside 1.03 radii a sample asks
 // for the whole cell of the sphere that a direction stands for, as a square of lines: a half to
-// a fifth of the noise. Deterministic for any thread count.
+// a fifth of the noise. Deterministic for any thread count, on one type of processor (Embree's).
 #pragma once
 
 #include "assetc/bake/field_samples.h"
@@ -19,8 +20,8 @@ namespace penumbra {
 // from two radii on it errs by less than half of the default threshold (docs/decisions/0006).
 std::vector<std::uint16_t> bakedSides(const ShadowField& field, std::uint32_t side);
 
-// Pixels across the bounding sphere that err no more than so many directions do: 384 for up to
-// 1,024, from there on with their square root, at most 1,024.
+// Pixels across the bounding sphere that err no more than so many directions do: 10 times the
+// square root of their number, 320 to 1,024.
 std::uint32_t rasterSideFor(std::uint32_t directions);
 
 struct BakeOptions {

@@ -42,6 +42,7 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
 
     BakeResult baked;
     float threshold = options.adaptThreshold;
+    std::uint32_t side = kMaxFieldSide;
     if (options.targetError && options.bake.field) {
         // Bakes finer and finer until the error is small enough; the last one is the field.
         const StageTimer timer(report.times, "target");
@@ -57,9 +58,9 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
     } else {
         // Self-visibility of the vertices and the field of the space around.
         const StageTimer timer(report.times, "bake");
-        BakeOptions finer = options.bake;
-        finer.side = std::max(options.bake.side, std::min(2 * options.bake.side - 1, 65u));
-        baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, finer, progress);
+        baked =
+            bakeMesh(mesh.positions, mesh.normals, mesh.indices, finerBake(options.bake), progress);
+        side = options.bake.side;
     }
     mesh.selfVisibility = std::move(baked.selfVisibility);
     if (options.verify) {
@@ -67,10 +68,10 @@ Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& plac
         report.verify = verifyBake(mesh, baked.field);
     }
     if (options.bake.field) {
-        // Coarser grids for the shells that do without the fine one; bytes; how wrong they are.
+        // To the side asked for; coarser grids for the shells that do without; bytes; how wrong
+        // they are.
         const StageTimer timer(report.times, "adapt");
-        if (!report.target)
-            baked.field = coarsened(baked.field, options.bake.side);
+        baked.field = coarsened(baked.field, side);
         if (threshold > 0)
             report.adapt = adaptShells(baked.field, {threshold});
         mesh.field = quantiseField(baked.field);

@@ -3,7 +3,7 @@
 #include "runtime/assert.h"
 
 #include <algorithm>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 namespace penumbra {
 
@@ -72,8 +72,8 @@ EmbreeScene::EmbreeScene(std::span<const vec3> positions, std::span<const std::u
     rtcAttachGeometry(m_scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcSetSceneFlags(m_scene, RTC_SCENE_FLAG_ROBUST);
-    const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
-    rtcCommitScene(m_scene);
+    tbb::task_arena serial(1);
+    serial.execute([&] { rtcCommitScene(m_scene); });
 }
 
 EmbreeScene::~EmbreeScene()

@@ -189,8 +189,18 @@ void fitShells(const FieldSamples& original, std::size_t field, ShellGrids& kept
         fit.step();
 }
 
+BakeOptions finerBake(const BakeOptions& options)
+{
+    constexpr std::uint32_t kFineEnough = 65;
+    BakeOptions finer = options;
+    finer.side = std::max(options.side, std::min(2 * options.side - 1, kFineEnough));
+    return finer;
+}
+
 FieldSamples coarsened(const FieldSamples& fine, std::uint32_t side)
 {
+    if (largestSide(fine.head) <= side)
+        return fine;
     FieldSamples out;
     out.head = fine.head;
     const std::size_t shells = fine.head.shellSides.size();

@@ -3,7 +3,7 @@
 // same nodes give a mean error near zero and a smaller one everywhere.
 #pragma once
 
-#include "assetc/bake/field_samples.h"
+#include "assetc/bake.h"
 
 namespace penumbra {
 
@@ -17,6 +17,10 @@ std::uint32_t sideOf(const std::vector<Sh4>& grid);
 // firstNode, shell 0) that are not inside, of squared differences to what readers interpolate: by
 // preconditioned gradient descent, which never makes the sum larger.
 void fitShells(const FieldSamples& original, std::size_t field, ShellGrids& kept);
+
+// Sides below 65 are baked with twice the nodes along each edge, and then coarsened; from 65 on
+// that would cost more than it gains.
+BakeOptions finerBake(const BakeOptions& options);
 
 // The field with no shell above `side` (2^k + 1): every second, fourth … node, fitted. A third less
 // wrong than nodes baked on that grid.

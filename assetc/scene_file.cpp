@@ -53,7 +53,6 @@ void readAsset(const JsonReader& component, const std::filesystem::path& folder,
 void readEntity(const JsonReader& entity, std::size_t index, const std::filesystem::path& folder,
                 SceneFile& scene)
 {
-    entity.refuseOthers({"Name", "Parent", "Transform", "MeshInstance", "ShadowFieldOccluder"});
     if (entity.has("Name"))
         static_cast<void>(entity.member("Name").text("value"));
     if (entity.has("Parent")) {
@@ -90,7 +89,6 @@ std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonPr
     }
     JsonProblems found;
     const JsonReader root(*document, "", found);
-    root.refuseOthers({"version", "entities", "lights"});
     if (root.count("version", std::numeric_limits<std::uint32_t>::max()) != kSceneVersion &&
         found.empty())
         root.member("version").refuse(

@@ -1,6 +1,7 @@
 #include "assetc/target_error.h"
 
 #include "assetc/field_errors.h"
+#include "assetc/fit_shells.h"
 
 #include <algorithm>
 #include <chrono>
@@ -51,7 +52,9 @@ TargetBake bakeToError(const MeshAsset& mesh, float target, BakeOptions options,
     TargetReport& report = result.report;
     for (;;) {
         const auto start = std::chrono::steady_clock::now();
-        result.baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);
+        result.baked =
+            bakeMesh(mesh.positions, mesh.normals, mesh.indices, finerBake(options), progress);
+        result.baked.field = coarsened(result.baked.field, options.side);
         const BakeResult& baked = result.baked;
         const FieldErrors whole =
             measureErrors(baked.field, quantiseField(baked.field), baked.probes);

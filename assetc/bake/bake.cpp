@@ -21,7 +21,7 @@ namespace penumbra {
 
 namespace {
 
-// Direction pairs rasterised before looking up: their lines, 1.2 MB each, stay in the caches.
+// Direction pairs rasterised before looking up: their lines, 0.8 MB each, stay in the caches.
 constexpr std::size_t kBatch = 4; // even: see accumulate
 
 // Of a raster's pixel: so close to the surface lie one node in a hundred and two thirds of the

@@ -371,9 +371,9 @@ PENUMBRA_CLONES void finishRaster(float* near, float* far, int side, std::uint32
             std::memcpy(lines + at, &packed, sizeof(Ints));
 
             Ints sum = -hit; // then the running sum of it
-            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 0, 1, 2, 3, 4, 5, 6});
-            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 8, 0, 1, 2, 3, 4, 5});
-            sum += __builtin_shuffle(sum, Ints{}, Ints{8, 8, 8, 8, 0, 1, 2, 3});
+            sum += __builtin_shufflevector(sum, Ints{}, 8, 0, 1, 2, 3, 4, 5, 6);
+            sum += __builtin_shufflevector(sum, Ints{}, 8, 8, 0, 1, 2, 3, 4, 5);
+            sum += __builtin_shufflevector(sum, Ints{}, 8, 8, 8, 8, 0, 1, 2, 3);
             sum += before;
             before = Ints{} + sum[kLanes - 1];
             Ints below;

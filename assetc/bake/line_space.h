@@ -3,8 +3,7 @@
 //
 // Lines parallel to w fall on a square grid over the bounding sphere's disc. Each keeps the
 // interval [near, far] of the mesh's depths p.w. A ray from p along +w is blocked if far > p.w,
-// along -w if near < p.w. Depths between count as blocked both ways only if they are: a point
-// between two surfaces sees neither direction.
+// along -w if near < p.w: a point between two surfaces sees neither direction.
 #pragma once
 
 #include "shaders/shared/interop.h"
@@ -29,8 +28,8 @@ struct TriangleSet {
 
 // Working memory of rasterise, to be kept by a thread.
 struct RasterScratch {
-    std::vector<float> near, far;
-    std::vector<float> x, y, z; // [vertexCount] projected: pixels, pixels, depth
+    std::vector<float> near, far; // hold nothing between rasters
+    std::vector<float> x, y, z;   // [vertexCount] projected: pixels, pixels, depth
 };
 
 class LineSpace {

@@ -56,16 +56,15 @@ TEST(Lods, EachHasHalfTheTrianglesAndKnowsItsError)
         error = lod.error;
     }
     ASSERT_TRUE(validateMesh(mesh));
-    // The simplifier's number is an estimate: the true distance is of its size.
+    // Measured from all vertices, as here.
     float worst = 0;
     const MeshLod& last = mesh.lods.back();
     for (std::size_t i = 0; i < mesh.positions.size(); i += 37)
         worst = max(worst, distanceTo(last, mesh.positions[i]));
-    EXPECT_LT(worst, 4 * last.error + 0.05f); // 0.05: samples of the triangles
+    EXPECT_LT(worst, last.error + 0.05f); // 0.05: samples of the triangles
 }
 
-// A simplifier drops small parts whole, at no cost that it sees: levels that do are not made, or
-// say how far the mesh then lies from them.
+// A simplifier drops small parts whole, at no cost that it sees: levels that do are not made.
 TEST(Lods, PartsThatGoCountAsError)
 {
     MeshAsset mesh;
@@ -79,9 +78,7 @@ TEST(Lods, PartsThatGoCountAsError)
             mesh.indices.push_back(4 * part + i);
     }
     buildLods(mesh, 4);
-    for (const MeshLod& lod : mesh.lods)
-        for (std::size_t i = 0; i < mesh.positions.size(); i += 7)
-            EXPECT_LE(distanceTo(lod, mesh.positions[i]), lod.error + 0.02f);
+    EXPECT_TRUE(mesh.lods.empty()) << mesh.lods.back().error;
 }
 
 // Vertices of a level are vertices of the mesh, with all they have.
