@@ -77,9 +77,8 @@ public:
         m_fields = std::size_t{head.channels} * head.frames;
         for (std::size_t s = 0; s < m_shells; ++s) {
             const float r = shellRadius(head, s);
-            m_decay.push_back(fieldDecay(r * r));
             m_limit.push_back(limit.threshold *
-                              (limit.radiance > 0 ? limit.radiance * m_decay.back() : 1.0f));
+                              (limit.radiance > 0 ? limit.radiance * fieldDecay(r * r) : 1.0f));
         }
     }
 
@@ -215,8 +214,7 @@ private:
         return adapted;
     }
 
-    // What readers make of shell s from the grids of the kept ones around it, or of its own: linear
-    // in the quantised values, which are the coefficients over g(r).
+    // What readers make of shell s from the grids of the kept ones around it, or of its own.
     [[nodiscard]] Grid between(const Grid& low, std::size_t from, const Grid& high, std::size_t to,
                                std::size_t s) const
     {
@@ -225,11 +223,10 @@ private:
         if (from == to)
             return value;
         const Grid above = refineNodes(high, sideOf(high), side);
-        const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
-        const float a = (1 - t) * m_decay[s] / m_decay[from], b = t * m_decay[s] / m_decay[to];
+        const ShellBlend blend = blendBetween(m_field.head, from, to, s);
         for (std::size_t i = 0; i < value.size(); ++i)
             for (int k = 0; k < 16; ++k)
-                value[i].c[k] = a * value[i].c[k] + b * above[i].c[k];
+                value[i].c[k] = blend.from * value[i].c[k] + blend.to * above[i].c[k];
         return value;
     }
 
@@ -255,7 +252,6 @@ private:
 
     const FieldSamples& m_field;
     std::size_t m_shells = 0, m_fields = 0;
-    std::vector<float> m_decay; // [shell] g(r)
     std::vector<float> m_limit; // [shell]
     std::vector<Shell> m_adapted;
 };

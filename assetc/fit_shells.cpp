@@ -1,7 +1,6 @@
 #include "assetc/fit_shells.h"
 
 #include "runtime/assert.h"
-#include "shaders/shared/field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,12 +23,7 @@ struct Bilinear {
     template <class Visit>
     void operator()(std::uint32_t x, std::uint32_t y, Visit&& visit) const
     {
-        const float scale = static_cast<float>(side - 1) / static_cast<float>(to - 1);
-        const float u = static_cast<float>(x) * scale, v = static_cast<float>(y) * scale;
-        const std::uint32_t x0 = std::min(static_cast<std::uint32_t>(u), side - 2);
-        const std::uint32_t y0 = std::min(static_cast<std::uint32_t>(v), side - 2);
-        const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
-        const std::size_t at = std::size_t{y0} * side + x0;
+        const auto [at, fx, fy] = placeOnGrid(side, to, x, y);
         visit(at, (1 - fx) * (1 - fy));
         visit(at + 1, fx * (1 - fy));
         visit(at + side, (1 - fx) * fy);
@@ -43,12 +37,9 @@ public:
         : m_original(original), m_field(field), m_kept(kept)
     {
         const std::size_t shells = kept.size();
-        for (std::size_t s = 0; s < shells; ++s) {
-            const float r = shellRadius(original.head, s);
-            m_decay.push_back(fieldDecay(r * r));
+        for (std::size_t s = 0; s < shells; ++s)
             if (!kept[s].empty())
                 m_keptShells.push_back(s);
-        }
         m_sources.resize(shells);
         for (std::size_t i = 0; i < m_keptShells.size(); ++i) {
             const std::size_t from = m_keptShells[i];
@@ -57,10 +48,9 @@ public:
                 break;
             const std::size_t to = m_keptShells[i + 1];
             for (std::size_t s = from + 1; s < to; ++s) {
-                // Linear in the quantised values, which are the coefficients over g(r).
-                const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
-                m_sources[s].push_back({from, (1 - t) * m_decay[s] / m_decay[from]});
-                m_sources[s].push_back({to, t * m_decay[s] / m_decay[to]});
+                const ShellBlend blend = blendBetween(original.head, from, to, s);
+                m_sources[s].push_back({from, blend.from});
+                m_sources[s].push_back({to, blend.to});
             }
         }
         m_residual.resize(shells);
@@ -165,7 +155,6 @@ private:
     const FieldSamples& m_original;
     std::size_t m_field;
     ShellGrids& m_kept;
-    std::vector<float> m_decay;
     std::vector<std::size_t> m_keptShells;
     std::vector<std::vector<Source>> m_sources; // [shell] the kept shells that it is made from
     std::vector<std::vector<Sh4>> m_residual;   // [shell][y][x]

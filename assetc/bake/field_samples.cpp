@@ -26,20 +26,35 @@ std::size_t firstNode(const ShadowField& field, std::size_t grid)
     return first;
 }
 
+GridPlace placeOnGrid(std::uint32_t side, std::uint32_t to, std::uint32_t x, std::uint32_t y)
+{
+    const float scale = static_cast<float>(side - 1) / static_cast<float>(to - 1); // exact: 2^n
+    const float u = static_cast<float>(x) * scale, v = static_cast<float>(y) * scale;
+    const std::uint32_t x0 = std::min(static_cast<std::uint32_t>(u), side - 2);
+    const std::uint32_t y0 = std::min(static_cast<std::uint32_t>(v), side - 2);
+    return {std::size_t{y0} * side + x0, u - static_cast<float>(x0), v - static_cast<float>(y0)};
+}
+
+ShellBlend blendBetween(const ShadowField& field, std::size_t from, std::size_t to, std::size_t s)
+{
+    const auto decay = [&](std::size_t shell) {
+        const float r = shellRadius(field, shell);
+        return fieldDecay(r * r);
+    };
+    const float t = static_cast<float>(s - from) / static_cast<float>(to - from);
+    return {(1 - t) * decay(s) / decay(from), t * decay(s) / decay(to)};
+}
+
 std::vector<Sh4> refineNodes(const std::vector<Sh4>& grid, std::uint32_t side, std::uint32_t to)
 {
     if (side == to)
         return grid;
     std::vector<Sh4> out;
     out.reserve(std::size_t{to} * to);
-    const float scale = static_cast<float>(side - 1) / static_cast<float>(to - 1); // exact: 2^n
     for (std::uint32_t y = 0; y < to; ++y)
         for (std::uint32_t x = 0; x < to; ++x) {
-            const float u = static_cast<float>(x) * scale, v = static_cast<float>(y) * scale;
-            const std::uint32_t x0 = std::min(static_cast<std::uint32_t>(u), side - 2);
-            const std::uint32_t y0 = std::min(static_cast<std::uint32_t>(v), side - 2);
-            const float fx = u - static_cast<float>(x0), fy = v - static_cast<float>(y0);
-            const Sh4* low = &grid[std::size_t{y0} * side + x0];
+            const auto [at, fx, fy] = placeOnGrid(side, to, x, y);
+            const Sh4* low = &grid[at];
             const Sh4* high = low + side;
             Sh4 value;
             for (int k = 0; k < 16; ++k)

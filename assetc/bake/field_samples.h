@@ -24,6 +24,21 @@ PENUMBRA_CONST float kSeesNothing = -0.9995f * kSqrt4Pi;
 // Index of a grid's first node; grids are counted as in fieldGrid (assets/shadow_field.h).
 std::size_t firstNode(const ShadowField& field, std::size_t grid);
 
+// Where node (x, y) of a grid of side `to` lies on one of side `side`; both sides 2^k + 1.
+struct GridPlace {
+    std::size_t low; // index of the lower corner of its cell
+    float x, y;      // from there, in cells
+};
+GridPlace placeOnGrid(std::uint32_t side, std::uint32_t to, std::uint32_t x, std::uint32_t y);
+
+// The parts of the coefficients of shells `from` and `to` that readers find at shell s between
+// them, if those between were left out: linear in the quantised values, which are the coefficients
+// over g(r).
+struct ShellBlend {
+    float from, to;
+};
+ShellBlend blendBetween(const ShadowField& field, std::size_t from, std::size_t to, std::size_t s);
+
 // A grid [y][x] on another side, bilinear between its nodes; both sides 2^k + 1.
 std::vector<Sh4> refineNodes(const std::vector<Sh4>& grid, std::uint32_t side, std::uint32_t to);
 

@@ -93,10 +93,19 @@ PENUMBRA_INLINE void setUpTriangles(const Projected& p, const std::uint32_t* con
     }
 }
 
+// Depths while triangles are drawn: the nearest and the farthest so far.
+struct Depths {
+    float *near, *far; // [pitch * pitch + padding]
+    int pitch;
+};
+
+// Rows that edge functions are added up over before they are worked out anew: each sum rounds.
+constexpr int kRowsAtOnce = 8;
+
 // Widens near/far of every pixel whose centre triangle i covers, in at most 8 columns from `x` on
-// and `rows` rows from `y` on: few, since what is added up from row to row rounds each time.
-PENUMBRA_INLINE void drawPart(const SetUp& t, std::size_t i, int x, int y, int rows, int pitch,
-                              float* near, float* far)
+// and `rows` rows, at most kRowsAtOnce, from `y` on.
+PENUMBRA_INLINE void drawPart(const SetUp& t, std::size_t i, int x, int y, int rows,
+                              const Depths& depths)
 {
     const Lanes lane = {0, 1, 2, 3, 4, 5, 6, 7};
     const Lanes step = lane + static_cast<float>(x);
@@ -106,8 +115,9 @@ PENUMBRA_INLINE void drawPart(const SetUp& t, std::size_t i, int x, int y, int r
     Lanes b = t.corner[1][i] + down * t.dy[1][i] + step * t.dx[1][i];
     Lanes c = t.corner[2][i] + down * t.dy[2][i] + step * t.dx[2][i];
     Lanes depth = t.depth[i] + down * t.depthDy[i] + step * t.depthDx[i];
-    near += t.pixel[i] + x + y * pitch;
-    far += t.pixel[i] + x + y * pitch;
+    const int pitch = depths.pitch;
+    float* near = depths.near + t.pixel[i] + x + y * pitch;
+    float* far = depths.far + t.pixel[i] + x + y * pitch;
     for (int row = 0; row < rows; ++row, near += pitch, far += pitch) {
         // Coverage is inclusive on all edges: a line on an edge hits both triangles, but for the
         // rounding of these few operations.
@@ -134,18 +144,17 @@ struct Classes {
 };
 
 template <int kRows>
-PENUMBRA_INLINE void drawClasses(const SetUp& t, const Classes& classes, int pitch, float* near,
-                                 float* far)
+PENUMBRA_INLINE void drawClasses(const SetUp& t, const Classes& classes, const Depths& depths)
 {
     for (std::size_t k = 0; k < classes.count[kRows]; ++k)
-        drawPart(t, classes.members[kRows][k], 0, 0, kRows, pitch, near, far);
+        drawPart(t, classes.members[kRows][k], 0, 0, kRows, depths);
     if constexpr (kRows + 2 < kClasses)
-        drawClasses<kRows + 1>(t, classes, pitch, near, far);
+        drawClasses<kRows + 1>(t, classes, depths);
 }
 
 PENUMBRA_CLONES void drawTriangles(const Projected& projected,
                                    const std::uint32_t* const corners[3], std::size_t count,
-                                   int side, float* near, float* far)
+                                   int side, const Depths& depths)
 {
     SetUp ready;
     for (std::size_t first = 0; first < count; first += kSetUp) {
@@ -157,14 +166,12 @@ PENUMBRA_CLONES void drawTriangles(const Projected& projected,
         for (std::size_t i = 0; i < n; ++i)
             classes.members[ready.rowClass[i]][classes.count[ready.rowClass[i]]++] =
                 static_cast<std::uint8_t>(i);
-        const int pitch = pitchOf(side);
-        drawClasses<1>(ready, classes, pitch, near, far);
+        drawClasses<1>(ready, classes, depths);
         for (std::size_t k = 0; k < classes.count[kClasses - 1]; ++k) {
             const std::size_t i = classes.members[kClasses - 1][k];
-            for (int y = 0; y < ready.rows[i]; y += kClasses)
+            for (int y = 0; y < ready.rows[i]; y += kRowsAtOnce)
                 for (int x = 0; x < ready.columns[i]; x += kLanes)
-                    drawPart(ready, i, x, y, std::min(kClasses, ready.rows[i] - y), pitch, near,
-                             far);
+                    drawPart(ready, i, x, y, std::min(kRowsAtOnce, ready.rows[i] - y), depths);
         }
     }
 }
@@ -176,8 +183,8 @@ struct Frame { // right-handed; w along the lines
 struct LookUp {
     Frame frame;
     float side;
-    const std::uint32_t* lines;
-    const float *x, *y, *z; // points
+    const std::uint32_t* packed; // depths of all lines
+    const float *x, *y, *z;      // points
 };
 
 // Where a line meets the raster, in pixels from its lower corner, and a point's depth on it.
@@ -236,7 +243,7 @@ PENUMBRA_CLONES std::size_t lookUpNearest(const LookUp& l, const Lines& lines, s
         const float y = std::min(std::max(lines.row[i] + 1, 0.0f), l.side + 1);
         pixel[i] = static_cast<int>(y) * pitch + static_cast<int>(x);
     }
-    const std::uint32_t* const raster = l.lines;
+    const std::uint32_t* const raster = l.packed;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t line = raster[pixel[i]];
         const auto packedFar = static_cast<float>(static_cast<int>(line >> 16));
@@ -276,7 +283,7 @@ PENUMBRA_CLONES void lookUpBetween(const LookUp& l, const Lines& lines, const st
     }
     Corners corners;
     for (int k = 0; k < 4; ++k)
-        readCorner(l.lines + (k & 1) + (k >> 1) * pitch, pixel, count, corners.far[k],
+        readCorner(l.packed + (k & 1) + (k >> 1) * pitch, pixel, count, corners.far[k],
                    corners.near[k], corners.hit[k]);
     float far[LineSpace::kMaxLookUp], near[LineSpace::kMaxLookUp];
     for (std::size_t k = 0; k < count; ++k) {
@@ -348,11 +355,12 @@ PENUMBRA_CLONES void lookUpBoxes(const LookUp& l, const std::uint32_t* sums, std
 // Depths to lines: 1 to 65535 for -1 to 1; the nearest with its sign turned, so that 0 means none
 // for both. sums[y][x]: lines that hit something in rows below y and columns below x. near and far
 // hold nothing again afterwards.
-PENUMBRA_CLONES void finishRaster(float* near, float* far, int side, std::uint32_t* lines,
+PENUMBRA_CLONES void finishRaster(const Depths& depths, int side, std::uint32_t* lines,
                                   std::uint32_t* sums)
 {
+    float *near = depths.near, *far = depths.far;
     const Lanes one = Lanes{} + 1.0f, largest = Lanes{} + 65535.0f;
-    const int pitch = pitchOf(side);
+    const int pitch = depths.pitch;
     for (int y = 0; y < side; ++y) {
         Ints before = {};
         for (int x = 0; x < side; x += kLanes) {
@@ -389,15 +397,17 @@ PENUMBRA_CLONES void finishRaster(float* near, float* far, int side, std::uint32
     }
 }
 
-PENUMBRA_CLONES void projectVertices(const float* x, const float* y, const float* z,
-                                     std::size_t count, const Frame& f, float side, float* outX,
-                                     float* outY, float* outZ)
+PENUMBRA_CLONES void projectVertices(const PointSet& vertices, const Frame& f, float side,
+                                     RasterScratch& out)
 {
     const float half = 0.5f * side, centre = half - 0.5f; // pixel centres at whole numbers
+    const float *px = vertices.x.data(), *py = vertices.y.data(), *pz = vertices.z.data();
+    float *outX = out.x.data(), *outY = out.y.data(), *outZ = out.z.data();
+    const std::size_t count = vertices.x.size();
     for (std::size_t i = 0; i < count; ++i) {
-        outX[i] = (x[i] * f.u.x + y[i] * f.u.y + z[i] * f.u.z) * half + centre;
-        outY[i] = (x[i] * f.v.x + y[i] * f.v.y + z[i] * f.v.z) * half + centre;
-        outZ[i] = x[i] * f.w.x + y[i] * f.w.y + z[i] * f.w.z;
+        outX[i] = (px[i] * f.u.x + py[i] * f.u.y + pz[i] * f.u.z) * half + centre;
+        outY[i] = (px[i] * f.v.x + py[i] * f.v.y + pz[i] * f.v.z) * half + centre;
+        outZ[i] = px[i] * f.w.x + py[i] * f.w.y + pz[i] * f.w.z;
     }
 }
 
@@ -439,16 +449,14 @@ void LineSpace::rasterise(vec3 w, const PointSet& vertices, const TriangleSet& t
     }
     for (std::vector<float>* projected : {&scratch.x, &scratch.y, &scratch.z})
         projected->resize(vertices.size());
-    projectVertices(vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.size(),
-                    {m_u, m_v, m_w}, static_cast<float>(m_side), scratch.x.data(), scratch.y.data(),
-                    scratch.z.data());
+    projectVertices(vertices, {m_u, m_v, m_w}, static_cast<float>(m_side), scratch);
     const std::uint32_t* const corners[3] = {triangles.corner[0].data(), triangles.corner[1].data(),
                                              triangles.corner[2].data()};
+    const auto side = static_cast<int>(m_side);
+    const Depths depths{scratch.near.data(), scratch.far.data(), pitchOf(side)};
     drawTriangles({scratch.x.data(), scratch.y.data(), scratch.z.data()}, corners,
-                  triangles.corner[0].size(), static_cast<int>(m_side), scratch.near.data(),
-                  scratch.far.data());
-    finishRaster(scratch.near.data(), scratch.far.data(), static_cast<int>(m_side), m_lines.data(),
-                 m_sums.data());
+                  triangles.corner[0].size(), side, depths);
+    finishRaster(depths, side, m_lines.data(), m_sums.data());
 }
 
 unsigned LineSpace::lookUp(const PointSet& points, std::size_t begin, std::size_t count,

@@ -22,9 +22,15 @@ public:
     // Thread safe and deterministic.
     [[nodiscard]] virtual RadianceSh radianceAt(vec3 position) const = 0;
 
-    // Estimate of the error of radianceAt by the finite number of samples: half the difference
+    // radianceAt, and an estimate of its error by the finite number of samples: half the difference
     // between what every other sample gives. 0 where there is no such error.
-    [[nodiscard]] virtual RadianceSh noiseAt(vec3 /*position*/) const { return {}; }
+    struct Estimate {
+        RadianceSh radiance, noise;
+    };
+    [[nodiscard]] virtual Estimate estimateAt(vec3 position) const
+    {
+        return {radianceAt(position), {}};
+    }
 
     // Flux through the whole surface without what it blocks itself, RGB, W.
     [[nodiscard]] virtual vec3 power() const = 0;

@@ -79,8 +79,8 @@ std::vector<Probe> probeLight(const Emitter& emitter, const ShadowField& field)
             const std::size_t p = 3 * kStep * i + point;
             return field.center + field.radius * vec3(points.x[p], points.y[p], points.z[p]);
         };
-        const RadianceSh exact = emitter.radianceAt(place(0)), low = emitter.radianceAt(place(1)),
-                         high = emitter.radianceAt(place(2)), noise = emitter.noiseAt(place(0));
+        const auto [exact, noise] = emitter.estimateAt(place(0));
+        const RadianceSh low = emitter.radianceAt(place(1)), high = emitter.radianceAt(place(2));
         for (std::size_t c = 0; c < 3; ++c) {
             const Probe& at = drawn.probes[kStep * i];
             probes[3 * i + c] = {at.direction, at.shell, exact[c], low[c], high[c], noise[c]};

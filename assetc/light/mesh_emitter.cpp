@@ -253,9 +253,10 @@ RadianceSh MeshEmitter::radianceAt(vec3 position) const
 }
 
 // The estimates by either half are (sh ± difference); half of their difference is `difference`.
-RadianceSh MeshEmitter::noiseAt(vec3 position) const
+Emitter::Estimate MeshEmitter::estimateAt(vec3 position) const
 {
-    return colored(sumAt(position).difference);
+    const Sum sum = sumAt(position);
+    return {colored(sum.sh), colored(sum.difference)};
 }
 
 vec3 MeshEmitter::power() const

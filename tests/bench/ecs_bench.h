@@ -109,4 +109,17 @@ struct PlainIds {
     }
 };
 
+// position += velocity * step, with __restrict parameters: what a careful plain program has.
+[[gnu::noinline]] inline void movePlain(float* __restrict px, float* __restrict py,
+                                        float* __restrict pz, const float* __restrict vx,
+                                        const float* __restrict vy, const float* __restrict vz,
+                                        size_t n)
+{
+    for (size_t i = 0; i < n; ++i) {
+        px[i] += vx[i] * kStep;
+        py[i] += vy[i] * kStep;
+        pz[i] += vz[i] * kStep;
+    }
+}
+
 } // namespace penumbra::ecs::bench

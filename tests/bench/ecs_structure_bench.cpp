@@ -57,11 +57,20 @@ Position positionOf(size_t i)
     return {f, f + 1, f + 2};
 }
 
+// n entities of the four components.
+struct FullWorld {
+    World world;
+    std::vector<Entity> entities;
+    explicit FullWorld(size_t n) : entities(n)
+    {
+        world.createMany(entities, Position{}, Velocity{}, Orientation{}, Health{});
+    }
+};
+
 void createWorld(benchmark::State& state, size_t n)
 {
-    World world;
-    std::vector<Entity> entities(n);
-    world.createMany(entities, Position{}, Velocity{}, Orientation{}, Health{});
+    FullWorld full(n);
+    auto& [world, entities] = full;
     bool done = true;
     for (auto _ : state) {
         state.PauseTiming();
@@ -98,12 +107,11 @@ void createPlain(benchmark::State& state, size_t n)
 // The plain twin of bulk creation is the plain creation one by one: ratios count against it.
 void createManyWorld(benchmark::State& state, size_t n)
 {
-    World world;
-    std::vector<Entity> entities(n);
+    FullWorld full(n);
+    auto& [world, entities] = full;
     std::vector<Position> positions(n);
     for (size_t i = 0; i < n; ++i)
         positions[i] = positionOf(i);
-    world.createMany(entities, Position{}, Velocity{}, Orientation{}, Health{});
     bool done = true;
     for (auto _ : state) {
         state.PauseTiming();
@@ -160,9 +168,8 @@ void destroyPlain(benchmark::State& state, size_t n)
 // sparse set).
 void addRemoveWorld(benchmark::State& state, size_t n)
 {
-    World world;
-    std::vector<Entity> entities(n);
-    world.createMany(entities, Position{}, Velocity{}, Orientation{}, Health{});
+    FullWorld full(n);
+    auto& [world, entities] = full;
     bool done = true;
     for (auto _ : state) {
         for (const Entity entity : entities)
@@ -178,9 +185,8 @@ void addRemoveWorld(benchmark::State& state, size_t n)
 
 void addRemoveManyWorld(benchmark::State& state, size_t n)
 {
-    World world;
-    std::vector<Entity> entities(n);
-    world.createMany(entities, Position{}, Velocity{}, Orientation{}, Health{});
+    FullWorld full(n);
+    auto& [world, entities] = full;
     bool done = true;
     for (auto _ : state) {
         world.addMany(entities, Poison{2});

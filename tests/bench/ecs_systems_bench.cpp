@@ -143,16 +143,6 @@ struct PlainKind {
 };
 
 // One function per system with __restrict parameters: what a careful plain program has.
-[[gnu::noinline]] void moveAll(float* __restrict px, float* __restrict py, float* __restrict pz,
-                               const float* __restrict vx, const float* __restrict vy,
-                               const float* __restrict vz, size_t n)
-{
-    for (size_t i = 0; i < n; ++i) {
-        px[i] += vx[i] * kStep;
-        py[i] += vy[i] * kStep;
-        pz[i] += vz[i] * kStep;
-    }
-}
 [[gnu::noinline]] void dragAll(float* __restrict vx, float* __restrict vy, float* __restrict vz,
                                size_t n)
 {
@@ -206,8 +196,8 @@ void systemsPlain(benchmark::State& state, size_t n)
         kinds.emplace_back(kKinds[k], n * (k + 1) / kKinds.size() - n * k / kKinds.size());
     for (auto _ : state) {
         for (PlainKind& k : kinds)
-            moveAll(k.px.data(), k.py.data(), k.pz.data(), k.vx.data(), k.vy.data(), k.vz.data(),
-                    k.n);
+            movePlain(k.px.data(), k.py.data(), k.pz.data(), k.vx.data(), k.vy.data(), k.vz.data(),
+                      k.n);
         for (PlainKind& k : kinds)
             dragAll(k.vx.data(), k.vy.data(), k.vz.data(), k.n);
         for (PlainKind& k : kinds)

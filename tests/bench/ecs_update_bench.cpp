@@ -17,21 +17,10 @@ struct PlainBodies {
     explicit PlainBodies(size_t n) : px(n), py(n), pz(n), vx(n, 1), vy(n, 2), vz(n, 3) {}
 };
 
-[[gnu::noinline]] void updatePlain(float* __restrict px, float* __restrict py, float* __restrict pz,
-                                   const float* __restrict vx, const float* __restrict vy,
-                                   const float* __restrict vz, size_t n)
-{
-    for (size_t i = 0; i < n; ++i) {
-        px[i] += vx[i] * kStep;
-        py[i] += vy[i] * kStep;
-        pz[i] += vz[i] * kStep;
-    }
-}
-
 void updateRange(PlainBodies& b, size_t first, size_t count)
 {
-    updatePlain(b.px.data() + first, b.py.data() + first, b.pz.data() + first, b.vx.data() + first,
-                b.vy.data() + first, b.vz.data() + first, count);
+    movePlain(b.px.data() + first, b.py.data() + first, b.pz.data() + first, b.vx.data() + first,
+              b.vy.data() + first, b.vz.data() + first, count);
 }
 
 constexpr auto kUpdate = [](Position& p, const Velocity& v) {
