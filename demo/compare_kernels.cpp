@@ -42,8 +42,7 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
 
     const std::uint32_t every = std::max(frames / kComparedFrames, 1u);
     for (std::uint32_t f = 0; f < frames; ++f) {
-        for (const ChangedInstance& changed : simulation.advance(1.0f / 60))
-            renderer.scene().setInstance(changed.index, moved(renderer.scene().data(), changed));
+        applyChanges(simulation.advance(1.0f / 60), renderer.scene());
         if (f % every != every - 1)
             continue;
         // Invisible clusters keep old radiance: start from the same for all.

@@ -14,9 +14,9 @@ CpuFrame combineOnCpu(Kernel kernel, const SceneData& scene, const FrameConstant
     frame.radiance.resize(scene.radianceCount);
     const auto start = Clock::now();
     const CpuInstances instances = updateInstances(scene);
-    const std::vector<ClusterOccluders> visible = cullAndSort(scene, instances, constants);
+    const std::vector<ClusterEntities> visible = cullAndSort(scene, instances, constants);
     const auto sorted = Clock::now();
-    for (const ClusterOccluders& cluster : visible) {
+    for (const ClusterEntities& cluster : visible) {
         combineCluster(kernel, scene, instances, constants, cluster, frame.radiance);
         frame.pairs += cluster.occluders.size() * kClusterReceivers;
     }

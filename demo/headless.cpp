@@ -50,7 +50,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
     const SceneData& data = renderer.scene().data();
     std::uint64_t dynamic = 0, occluders = 0;
     for (const SceneInstance& instance : data.instances)
-        occluders += instance.occluder && data.meshes[instance.mesh].field != kNoField ? 1 : 0;
+        occluders += instance.occluder ? 1 : 0;
     dynamic = scene.physics ? scene.physics->bodyCount() - 1 : 0; // one body is the ground
     return {{"scene", scene.name},
             {"device", options.cpuScalar ? "cpu-scalar" : device.properties.deviceName},
@@ -61,7 +61,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"frames", measured.frames},
             {"objects", dynamic},
             {"occluders", occluders},
-            {"lights", 1},
+            {"lights", 1 + data.lights.size()}, // the environment
             {"vertices", data.vertexCount},
             {"triangles", data.triangleCount},
             {"visibleReceivers", measured.visibleReceivers},
@@ -91,8 +91,7 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
                       const DemoOptions& options, Measurements& measured)
 {
     const auto start = Clock::now();
-    for (const ChangedInstance& changed : simulation.advance(1.0f / 60))
-        renderer.scene().setInstance(changed.index, moved(renderer.scene().data(), changed));
+    applyChanges(simulation.advance(1.0f / 60), renderer.scene());
     measured.cpu.add("simulate", millisecondsSince(start));
     if (options.cpuScalar) {
         const CpuFrame cpu =
@@ -124,9 +123,8 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
 
 Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptions& options)
 {
-    SceneData data = extractScene(scene.world, scene.assets);
     Result<std::unique_ptr<Renderer>> made =
-        Renderer::create(device, scene, std::move(data), {options.width, options.height});
+        Renderer::create(device, scene, {options.width, options.height});
     if (!made)
         return made.error();
     Renderer& renderer = **made;

@@ -30,7 +30,7 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances,
                            const FrameConstants& constants)
 {
     Receivers out;
-    for (const ClusterOccluders& visible : cullAndSort(data, instances, constants)) {
+    for (const ClusterEntities& visible : cullAndSort(data, instances, constants)) {
         const SceneCluster& cluster = data.clusters[visible.cluster];
         const MeshRange& mesh = data.meshes[data.instances[cluster.instance].mesh];
         const GpuInstance& g = instances.instances[cluster.instance];

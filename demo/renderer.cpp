@@ -2,21 +2,25 @@
 
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/transfer.h"
+#include "systems/extract.h"
 
 #include <chrono>
 #include <cstring>
 
 namespace penumbra {
 
-Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, const DemoScene& scene,
-                                                   SceneData data, VkExtent2D extent)
+Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoScene& scene,
+                                                   VkExtent2D extent)
 {
     std::unique_ptr<Renderer> renderer(new Renderer(device));
-    Result<FramePasses> passes = createFramePasses(device);
+    Result<SceneData> data = extractScene(scene.world, scene.assets);
+    if (!data)
+        return data.error();
+    Result<FramePasses> passes = createFramePasses(device, !data->lights.empty());
     if (!passes)
         return passes.error();
     renderer->m_passes = std::move(*passes);
-    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(data), scene.environment,
+    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(*data), scene.environment,
                                                  renderer->m_ring.framesInFlight());
     if (!gpuScene)
         return gpuScene.error();

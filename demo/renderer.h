@@ -14,9 +14,9 @@ namespace penumbra {
 
 class Renderer {
 public:
-    // `scene`'s environment and the instances of `data`; the device outlives the renderer.
-    static Result<std::unique_ptr<Renderer>> create(const Device& device, const DemoScene& scene,
-                                                    SceneData data, VkExtent2D extent);
+    // Extracts `scene`; the device outlives the renderer.
+    static Result<std::unique_ptr<Renderer>> create(const Device& device, DemoScene& scene,
+                                                    VkExtent2D extent);
 
     // Begins a frame, records it up to the display image, and leaves the command buffer open: end
     // it with endFrame, or record a copy of display() first.

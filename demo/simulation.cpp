@@ -12,26 +12,18 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
                 stepPhysics(context, *scene.physics, m_seconds);
             });
     }
-    m_schedule.add<const Transform, const RenderInstance>(
+    m_schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
+                   const RenderLight>(
         "gather", "extract",
-        [this](ecs::SystemContext& context) { gatherChanged(context, m_changed); });
+        [this](ecs::SystemContext& context) { gatherChanged(context, m_changes); });
 }
 
-std::span<const ChangedInstance> Simulation::advance(float seconds)
+const SceneChanges& Simulation::advance(float seconds)
 {
     m_seconds = seconds;
-    m_changed.clear();
+    m_changes.clear();
     m_schedule.run();
-    return m_changed;
-}
-
-SceneInstance moved(const SceneData& scene, const ChangedInstance& changed)
-{
-    SceneInstance instance = scene.instances[changed.index];
-    instance.position = changed.transform.position;
-    instance.scale = changed.transform.scale;
-    instance.rotation = changed.transform.rotation;
-    return instance;
+    return m_changes;
 }
 
 } // namespace penumbra

@@ -5,7 +5,6 @@
 #include "demo/scene.h"
 #include "runtime/ecs/schedule.h"
 #include "systems/extract.h"
-#include "systems/gpu_scene.h"
 
 namespace penumbra {
 
@@ -13,8 +12,8 @@ class Simulation {
 public:
     explicit Simulation(DemoScene& scene);
 
-    // Advances the scene and returns the instances that moved.
-    std::span<const ChangedInstance> advance(float seconds);
+    // Advances the scene and returns what changed.
+    const SceneChanges& advance(float seconds);
 
     [[nodiscard]] std::vector<ecs::Schedule::Timing> timings() const
     {
@@ -23,11 +22,8 @@ public:
 
 private:
     float m_seconds = 0;
-    std::vector<ChangedInstance> m_changed;
+    SceneChanges m_changes;
     ecs::Schedule m_schedule;
 };
-
-// The instance's new place, its other properties unchanged.
-SceneInstance moved(const SceneData& scene, const ChangedInstance& changed);
 
 } // namespace penumbra

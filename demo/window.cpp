@@ -145,8 +145,7 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(
-        device, *show.scene, extractScene(show.scene->world, show.scene->assets), extent);
+    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(device, *show.scene, extent);
     if (!renderer)
         return renderer.error();
     show.renderer = std::move(*renderer);
@@ -243,9 +242,7 @@ Result<void> runWindow(const DemoOptions& options)
         const float seconds = std::chrono::duration<float>(now - last).count();
         last = now;
         if (!controls.paused)
-            for (const ChangedInstance& changed : show->simulation->advance(seconds))
-                renderer.scene().setInstance(changed.index,
-                                             moved(renderer.scene().data(), changed));
+            applyChanges(show->simulation->advance(seconds), renderer.scene());
 
         const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
         Result<GpuFrame> frame =

@@ -156,33 +156,60 @@ def orbits():
             + [(unit((1.0, 1.0, 1.0)), dod)])
 
 
+def butterfly(code, name, parts, targets):
+    """Walsh-Hadamard transform of the 2^n expressions `parts`, into `targets`: one step per axis."""
+    axes = len(parts).bit_length() - 1
+    for b in range(axes):
+        new = list(parts)
+        for i in range(len(parts)):
+            if i >> b & 1:
+                continue
+            for index, sign in ((i, "+"), (i | 1 << b, "-")):
+                if b == axes - 1:
+                    code.append(f"    {targets[index]} = {parts[i]} {sign} {parts[i | 1 << b]};")
+                else:
+                    new[index] = f"{name}_{b}_{index}"
+                    code.append(f"    const float {new[index]} = {parts[i]} {sign} {parts[i | 1 << b]};")
+        parts = new
+
+
+def axis_masks(axes):
+    """For each subset of `axes`, as the bits of its place in the list, the mask of its axes."""
+    return [sum(1 << axes[b] for b in range(len(axes)) if mask >> b & 1) for mask in range(1 << len(axes))]
+
+
+def project():
+    """shNodes the other way: sums over the nodes, by the same butterflies."""
+    code, terms, slot = [], [[] for _ in range(N)], 0
+    for o, (p, weight) in enumerate(orbits()):
+        axes = [a for a in range(3) if p[a] > 1e-12]
+        masks, y = axis_masks(axes), basis(p)
+        butterfly(code, f"h{o}", [f"n.v[{slot + s}]" for s in range(len(masks))],
+                  [f"const float e{o}_{m}" for m in range(len(masks))])
+        for m, full in enumerate(masks):
+            for i in range(N):
+                if PARITY[i] == full and abs(y[i]) > 1e-12:
+                    terms[i].append(f"{number(weight * y[i])} * e{o}_{m}")
+        slot += len(masks)
+    code += [f"    f.c[{i}] = " + " + ".join(t).replace("+ -", "- ") + ";" for i, t in enumerate(terms)]
+    return (["// Coefficients of the function with these values: the integral over the sphere, by the rule, of n y_i.",
+             "PENUMBRA_FN Sh4 shProject(ShNodal n)", "{", "    Sh4 f;"] + code + ["    return f;", "}"])
+
+
 def nodes():
     lines = head("sh_nodes.h", "The 32-point rule of degree 9.")
     points, code, slot = [], [], 0
     for o, (p, weight) in enumerate(orbits()):
         axes = [a for a in range(3) if p[a] > 1e-12]
-        y = basis(p)
+        masks, y = axis_masks(axes), basis(p)
         # Even and odd parts by axis: e[m] holds what changes sign with exactly the axes of mask m.
         parts = []
-        for mask in range(1 << len(axes)):
-            full = sum(1 << axes[b] for b in range(len(axes)) if mask >> b & 1)
+        for mask, full in enumerate(masks):
             terms = [f"{number(y[i])} * f.c[{i}]" for i in range(N) if PARITY[i] == full and abs(y[i]) > 1e-12]
             code.append(f"    const float e{o}_{mask} = " + " + ".join(terms).replace("+ -", "- ") + ";")
             parts.append(f"e{o}_{mask}")
-        # Walsh-Hadamard: one butterfly per axis gives the values at all sign changes.
-        for b in range(len(axes)):
-            last = b == len(axes) - 1
-            new = list(parts)
-            for i in range(len(parts)):
-                if i >> b & 1:
-                    continue
-                for index, sign in ((i, "+"), (i | 1 << b, "-")):
-                    if last:
-                        code.append(f"    n.v[{slot + index}] = {parts[i]} {sign} {parts[i | 1 << b]};")
-                    else:
-                        new[index] = f"h{o}_{b}_{index}"
-                        code.append(f"    const float {new[index]} = {parts[i]} {sign} {parts[i | 1 << b]};")
-            parts = new
+        # One butterfly per axis gives the values at all sign changes.
+        butterfly(code, f"h{o}", parts, [f"n.v[{slot + index}]" for index in range(len(parts))])
         for signs in range(len(parts)):
             q = list(p)
             for b, a in enumerate(axes):
@@ -199,7 +226,7 @@ def nodes():
     lines += ["// xyz: direction, w: weight (the weights sum to 4 pi).", "#ifdef __cplusplus", "inline const vec4 kShNodes[32] = {",
               "#else", "const vec4 kShNodes[32] = vec4[32](", "#endif"]
     lines.append(",\n".join("    vec4(" + ", ".join(number(c + 0.0) for c in (*q, w)) + ")" for q, w in points))
-    lines += ["#ifdef __cplusplus", "};", "#else", ");", "#endif", "", "PENUMBRA_FN ShNodal shNodes(Sh4 f)", "{", "    ShNodal n;"] + code + ["    return n;", "}"]
+    lines += ["#ifdef __cplusplus", "};", "#else", ");", "#endif", "", "PENUMBRA_FN ShNodal shNodes(Sh4 f)", "{", "    ShNodal n;"] + code + ["    return n;", "}", ""] + project()
     return lines
 
 

@@ -1,59 +1,126 @@
 #version 460
 // combine_exact: one workgroup per visible cluster, kReceivers receivers per invocation.
 //   T = transfer of the receiver, its values at the 32 nodes          (shaders/shared/transfer.h)
-//   occluder: T = O * T, node by node                                 (triple product)
-//   light:    B = sum over nodes of weight * L * T                    (double product; the environment)
+//   occluder:    T = O * T, node by node                              (triple product)
+//   local light: B += integral of S T', where T' is T with the occluders that stand before the light (double product)
+//   environment: B += sum over nodes of weight * L * T, after the last occluder
 // Source: Zhou et al. 2005, Fig. 5; the fast way is findings section 1, kernel J.
 // Differs: products at quadrature nodes instead of tripling coefficients, so a chain keeps more than order 4 and is
-// commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster.
+// commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster; an occluder
+// comes before a light by a weight, not by a yes or no (shaders/shared/order.h).
 //   reads   visible, clusters, lists, instances, fields, receivers
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
+#include "shaders/shared/order.h"
+#include "shaders/shared/visibility.h"
 
 layout(constant_id = 0) const uint kReceivers = 4; // per invocation: amortises the loads of an occluder's constants
 layout(local_size_x_id = 1) in;                    // kClusterReceivers / kReceivers
 layout(constant_id = 2) const float kSelfScale = 1.0;
+layout(constant_id = 3) const bool kLocalLights = true;
+
+FieldTetrahedron tetrahedronAt(FieldEntity entity, vec3 position, out FieldCell cell)
+{
+    cell = fieldCell(fieldPoint(entity, position), entity.grid);
+    return fieldTetrahedron(cell.fraction, entity.grid);
+}
+
+Sh4 sampleField(uint sample0, FieldTetrahedron t)
+{
+    return fieldBlend(texelFetch(fieldTexels, int(sample0)), texelFetch(fieldTexels, int(sample0 + t.offset.y)),
+                      texelFetch(fieldTexels, int(sample0 + t.offset.z)),
+                      texelFetch(fieldTexels, int(sample0 + t.offset.w)), t.weight);
+}
+
+// `weight`: 1 blocks as the field says, 0 not at all.
+ShNodal occlusion(FieldEntity entity, vec3 position, float weight)
+{
+    FieldCell cell;
+    const FieldTetrahedron t = tetrahedronAt(entity, position, cell);
+    const Sh4 steps = sampleField(cell.sample0, t);
+    const Sh4 visibility = fieldVisibility(steps, entity.bandScale * (weight * cell.decay * (1.0 / 256.0)));
+    return shNodes(shRotate(visibility, entity.rotation));
+}
+
+// The double product, in the light's frame: one rotation for three channels.
+vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position)
+{
+    FieldCell cell;
+    const FieldTetrahedron t = tetrahedronAt(light, position, cell);
+    const Sh4 local = fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)),
+                                     light.bandScale * (cell.decay * (1.0 / 256.0)));
+    const uint channel = light.grid.side * light.grid.side * light.grid.shells;
+    return vec3(shDot(local, sampleField(cell.sample0, t)), shDot(local, sampleField(cell.sample0 + channel, t)),
+                shDot(local, sampleField(cell.sample0 + 2u * channel, t)));
+}
+
+uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kListStride + at)).x; }
+
+vec3 position[kReceivers], normal[kReceivers];
+ShNodal transfer[kReceivers];
+
+float risen(vec4 sphere, uint v) { return horizonWeight(normal[v], sphere.xyz - position[v], sphere.w); }
+
+void occlude(uint row)
+{
+    const GpuInstance occluder = loadInstance(row);
+    const FieldEntity entity = instanceField(occluder);
+    [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+        transfer[v] = shMultiply(transfer[v], occlusion(entity, position[v], risen(occluder.sphere, v)));
+}
+
+// `possible`: occluders that `transfer` has not got yet and that may stand before the light, as bits.
+vec3 localLight(GpuInstance light, uint possible, uint v)
+{
+    ShNodal through = transfer[v];
+    for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
+        const GpuInstance occluder = loadInstance(listed(kListOccluders + uint(findLSB(bits))));
+        const float weight = orderWeight(occluder.sphere, light.sphere, position[v]) * risen(occluder.sphere, v);
+        through = shMultiply(through, occlusion(instanceField(occluder), position[v], weight));
+    }
+    return risen(light.sphere, v) * light.material.rgb * lightThrough(through, instanceField(light), position[v]);
+}
 
 void main()
 {
     const uint lanes = kClusterReceivers / kReceivers;
     const SceneCluster cluster = clusters[texelFetch(visibleTexels, int(gl_WorkGroupID.x)).x];
-    const uint list = gl_WorkGroupID.x * kListStride;
-    const uint count = texelFetch(listTexels, int(list)).x;
+    const uint occluders = listed(0u);
 
-    vec3 position[kReceivers];
-    ShNodal transfer[kReceivers];
     const GpuInstance self = loadInstance(cluster.instance);
     const ShRotation worldFromObject = instanceRotation(self);
+    vec3 sum[kReceivers];
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
         const Receiver receiver = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
         const Sh4 visibility = selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale);
         position[v] = receiver.position;
+        normal[v] = receiver.normal;
         transfer[v] = transferNodal(shRotate(visibility, worldFromObject), receiver);
+        sum[v] = vec3(0.0);
     }
 
-    for (uint i = 0u; i < count; ++i) {
-        const uint occluder = texelFetch(listTexels, int(list + 1u + i)).x;
-        const FieldEntity entity = instanceField(loadInstance(occluder));
-        [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
-            const vec3 p = fieldPoint(entity, position[v]);
-            const FieldCell cell = fieldCell(p, entity.grid);
-            const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
-            const Sh4 steps = fieldBlend(texelFetch(fieldTexels, int(cell.sample0)),
-                                         texelFetch(fieldTexels, int(cell.sample0 + t.offset.y)),
-                                         texelFetch(fieldTexels, int(cell.sample0 + t.offset.z)),
-                                         texelFetch(fieldTexels, int(cell.sample0 + t.offset.w)), t.weight);
-            const Sh4 visibility = fieldVisibility(steps, entity.bandScale * (cell.decay * (1.0 / 256.0)));
-            transfer[v] = shMultiply(transfer[v], shNodes(shRotate(visibility, entity.rotation)));
+    uint next = 0u;
+    if (kLocalLights) {
+        const uint lights = listed(1u);
+        for (uint l = 0u; l < lights; ++l) {
+            const uint at = kListLights + 3u * l;
+            for (const uint before = listed(at + 1u); next < before; ++next)
+                occlude(listed(kListOccluders + next));
+            const GpuInstance light = loadInstance(listed(at));
+            const uint possible = listed(at + 2u);
+            [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+                sum[v] += localLight(light, possible, v);
         }
     }
+    for (; next < occluders; ++next)
+        occlude(listed(kListOccluders + next));
 
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
-        vec3 sum = vec3(0.0);
         for (int n = 0; n < 32; ++n)
-            sum += transfer[v].v[n] * frame.lightNodes[n].rgb;
-        radiance[cluster.firstRadiance + gl_LocalInvocationID.x + v * lanes] = vec4(self.material.rgb * sum, 1.0);
+            sum[v] += transfer[v].v[n] * frame.lightNodes[n].rgb;
+        radiance[cluster.firstRadiance + gl_LocalInvocationID.x + v * lanes] =
+            vec4(self.material.rgb * sum[v] + self.emission.rgb, 1.0);
     }
 }

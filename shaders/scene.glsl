@@ -16,15 +16,13 @@ layout(set = 0, binding = 9, scalar) readonly buffer Clusters { SceneCluster clu
 layout(set = 0, binding = 10, scalar) buffer Cull { CullResult cull; };
 layout(set = 0, binding = 11, scalar) buffer Visible { uint visible[]; };          // [visible] cluster
 layout(set = 0, binding = 12) uniform usamplerBuffer visibleTexels;
-layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][1 + kMaxClusterOccluders]
+layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][kListStride], see below
 layout(set = 0, binding = 14) uniform usamplerBuffer listTexels;
 layout(set = 0, binding = 15, scalar) writeonly buffer Radiance { vec4 radiance[]; };
 layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [instance] VkDrawIndexedIndirectCommand
 layout(set = 0, binding = 17, scalar) buffer DenseRotations { DenseRotation denseRotations[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer FieldSamples { uvec4 fieldSamples[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Receivers { ReceiverTexels receivers[]; };
-
-const uint kListStride = 1u + kMaxClusterOccluders;
 
 GpuInstance loadInstance(uint instance)
 {
@@ -40,5 +38,6 @@ GpuInstance loadInstance(uint instance)
     g.worldFromObject2 = texelFetch(instanceTexels, row + 7);
     g.material = texelFetch(instanceTexels, row + 8);
     g.material1 = texelFetch(instanceTexels, row + 9);
+    g.emission = texelFetch(instanceTexels, row + 10);
     return g; // rows that the caller does not use are not fetched: the compiler drops them
 }

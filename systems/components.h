@@ -63,6 +63,21 @@ template <>
 inline constexpr auto ecs::kFields<ShadowFieldOccluder> =
     ecs::fields(PENUMBRA_FIELD(ShadowFieldOccluder, asset, .kind = "mesh"));
 
+// The entity sheds the light of this asset's radiance field (`assetc light`), scaled and turned as
+// the entity; with a MeshInstance, that mesh is the surface that shines. Radiance does not change
+// with the scale, so power goes with its square. Lights and objects may overlap: which stands
+// before which is in shaders/shared/order.h.  Written by: spawn, editor.  Read by: scene build,
+// gather.
+struct ShadowFieldEmitter {
+    static constexpr std::string_view kName = "ShadowFieldEmitter";
+    AssetHandle asset;
+    vec3 intensity{1}; // factor of the field, linear Rec. 709
+};
+template <>
+inline constexpr auto ecs::kFields<ShadowFieldEmitter> =
+    ecs::fields(PENUMBRA_FIELD(ShadowFieldEmitter, asset, .kind = "light"),
+                PENUMBRA_FIELD(ShadowFieldEmitter, intensity, .min = 0, .max = 1e6));
+
 // The entity moves as a rigid body of the physics world.  Written by: spawn.  Read by: physics.
 struct RigidBody {
     static constexpr std::string_view kName = "RigidBody";

@@ -2,36 +2,148 @@
 
 namespace penumbra {
 
-SceneData extractScene(ecs::World& world, const AssetStore& assets)
+namespace {
+
+// Error: the entity's asset cannot be what `use` says.
+Result<void> needField(const ecs::World& world, ecs::Entity entity, const AssetStore& assets,
+                       AssetHandle asset, FieldKind kind, std::string_view use)
+{
+    const MeshAsset& mesh = assets.mesh(asset);
+    if (mesh.field && mesh.field->kind == kind)
+        return {};
+    return Error{fmt::format("{}: '{}' cannot be its {}, it has no {} field; {}",
+                             world.describe(entity), mesh.name, use,
+                             kind == FieldKind::Radiance ? "radiance" : "occlusion",
+                             kind == FieldKind::Radiance
+                                 ? "compile a light description with assetc light"
+                                 : "bake it with assetc bake without --no-field")};
+}
+
+template <class Component>
+void addIndices(ecs::World& world, const std::vector<ecs::Entity>& entities)
+{
+    for (std::uint32_t i = 0; i < entities.size(); ++i)
+        world.add(entities[i], Component{i});
+}
+
+template <class Place>
+void place(Place& at, const Transform& transform)
+{
+    at.position = transform.position;
+    at.scale = transform.scale;
+    at.rotation = transform.rotation;
+}
+
+MeshMaterial meshMaterial(const Material& material)
+{
+    return {material.albedo, material.glossFraction, material.glossExponent};
+}
+
+} // namespace
+
+Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
 {
     std::vector<SceneInstance> instances;
-    std::vector<ecs::Entity> entities;
+    std::vector<SceneLight> lights;
+    std::vector<ecs::Entity> instanceEntities, lightEntities;
+    Result<void> failed;
+    const auto need = [&](ecs::Entity entity, AssetHandle asset, FieldKind kind,
+                          std::string_view use) {
+        if (Result<void> has = needField(world, entity, assets, asset, kind, use); !has)
+            failed = has;
+    };
     world.query<const Transform, const MeshInstance>().each(
         [&](ecs::Entity entity, const Transform& transform, const MeshInstance& mesh) {
             SceneInstance instance;
             instance.mesh = mesh.asset.index;
-            instance.position = transform.position;
-            instance.scale = transform.scale;
-            instance.rotation = transform.rotation;
+            place(instance, transform);
             instance.material = assets.mesh(mesh.asset).material;
             if (const Material* material = world.tryGet<const Material>(entity))
-                instance.material = {material->albedo, material->glossFraction,
-                                     material->glossExponent};
-            instance.occluder = world.has<ShadowFieldOccluder>(entity);
+                instance.material = meshMaterial(*material);
+            if (const auto* occluder = world.tryGet<const ShadowFieldOccluder>(entity)) {
+                need(entity, occluder->asset, FieldKind::Occlusion, "occluder");
+                instance.occluder = occluder->asset.index;
+            }
+            if (const auto* emitter = world.tryGet<const ShadowFieldEmitter>(entity))
+                instance.emission = emitter->intensity;
             instances.push_back(instance);
-            entities.push_back(entity);
+            instanceEntities.push_back(entity);
         });
-    for (std::uint32_t i = 0; i < entities.size(); ++i)
-        world.add(entities[i], RenderInstance{i});
-    return buildSceneData(assets.meshes(), std::move(instances));
+    addIndices<RenderInstance>(world, instanceEntities);
+    world.query<const Transform, const ShadowFieldEmitter>().each(
+        [&](ecs::Entity entity, const Transform& transform, const ShadowFieldEmitter& emitter) {
+            need(entity, emitter.asset, FieldKind::Radiance, "emitter");
+            SceneLight light;
+            light.asset = emitter.asset.index;
+            place(light, transform);
+            light.intensity = emitter.intensity;
+            if (const auto* owner = world.tryGet<const RenderInstance>(entity))
+                light.owner = owner->index;
+            lights.push_back(light);
+            lightEntities.push_back(entity);
+        });
+    addIndices<RenderLight>(world, lightEntities);
+    if (!failed)
+        return failed.error();
+    return buildSceneData(assets.meshes(), std::move(instances), std::move(lights));
 }
 
-void gatherChanged(const ecs::SystemContext& context, std::vector<ChangedInstance>& out)
+void SceneChanges::clear()
+{
+    instances.clear();
+    lights.clear();
+    materials.clear();
+    intensities.clear();
+}
+
+void gatherChanged(const ecs::SystemContext& context, SceneChanges& out)
 {
     context.query<const Transform, const RenderInstance, ecs::Changed<Transform>>().each(
         [&](const Transform& transform, const RenderInstance& instance) {
-            out.push_back({instance.index, transform});
+            out.instances.push_back({instance.index, transform});
         });
+    context.query<const Material, const RenderInstance, ecs::Changed<Material>>().each(
+        [&](const Material& material, const RenderInstance& instance) {
+            out.materials.push_back({instance.index, material});
+        });
+    context.query<const Transform, const RenderLight, ecs::Changed<Transform>>().each(
+        [&](const Transform& transform, const RenderLight& light) {
+            out.lights.push_back({light.index, transform});
+        });
+    context.query<const ShadowFieldEmitter, const RenderLight, ecs::Changed<ShadowFieldEmitter>>()
+        .each([&](const ShadowFieldEmitter& emitter, const RenderLight& light) {
+            out.intensities.push_back({light.index, emitter.intensity});
+        });
+}
+
+void applyChanges(const SceneChanges& changes, GpuScene& scene)
+{
+    const SceneData& data = scene.data();
+    for (const SceneChanges::Moved& moved : changes.instances) {
+        SceneInstance instance = data.instances[moved.index];
+        place(instance, moved.transform);
+        scene.setInstance(moved.index, instance);
+    }
+    for (const SceneChanges::Repainted& repainted : changes.materials) {
+        SceneInstance instance = data.instances[repainted.index];
+        instance.material = meshMaterial(repainted.material);
+        scene.setInstance(repainted.index, instance);
+    }
+    for (const SceneChanges::Moved& moved : changes.lights) {
+        SceneLight light = data.lights[moved.index];
+        place(light, moved.transform);
+        scene.setLight(moved.index, light);
+    }
+    for (const SceneChanges::Dimmed& dimmed : changes.intensities) {
+        SceneLight light = data.lights[dimmed.index];
+        light.intensity = dimmed.intensity;
+        scene.setLight(dimmed.index, light);
+        if (light.owner) {
+            SceneInstance surface = data.instances[*light.owner];
+            surface.emission = dimmed.intensity;
+            scene.setInstance(*light.owner, surface);
+        }
+    }
 }
 
 } // namespace penumbra

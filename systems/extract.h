@@ -1,9 +1,11 @@
-// From entities to the renderer's instances: once when a scene starts, then only what changed.
+// From entities to the renderer's instances and lights: once when a scene starts, then only what
+// changed.
 #pragma once
 
 #include "runtime/ecs/system_context.h"
 #include "runtime/ecs/world.h"
 #include "systems/components.h"
+#include "systems/gpu_scene.h"
 #include "systems/scene_data.h"
 
 namespace penumbra {
@@ -14,18 +16,43 @@ struct RenderInstance {
     std::uint32_t index = 0;
 };
 
-// Gives every entity with Transform and MeshInstance an instance, in the order of the query, and
-// packs the scene. Mesh index = asset handle. The entity blocks light if it has a
-// ShadowFieldOccluder.
-SceneData extractScene(ecs::World& world, const AssetStore& assets);
-
-// An instance that moved since the system's last run.
-struct ChangedInstance {
+// Which light of SceneData the entity is.  Written by: extractScene.  Read by: gatherChanged.
+struct RenderLight {
+    static constexpr std::string_view kName = "RenderLight";
     std::uint32_t index = 0;
-    Transform transform;
 };
 
-// System: reads Transform, RenderInstance. Appends to `out`.
-void gatherChanged(const ecs::SystemContext& context, std::vector<ChangedInstance>& out);
+// Gives every entity with Transform and MeshInstance an instance, and every one with Transform and
+// ShadowFieldEmitter a light, in the order of the queries, and packs the scene. Asset index = asset
+// handle. Error: an emitter's or occluder's asset has no field of the kind; the message names the
+// entity.
+Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets);
+
+// What changed since the systems' last run.
+struct SceneChanges {
+    struct Moved {
+        std::uint32_t index = 0;
+        Transform transform;
+    };
+    struct Repainted {
+        std::uint32_t index = 0;
+        Material material;
+    };
+    struct Dimmed {
+        std::uint32_t index = 0;
+        vec3 intensity{1};
+    };
+    std::vector<Moved> instances, lights;
+    std::vector<Repainted> materials;
+    std::vector<Dimmed> intensities;
+
+    void clear();
+};
+
+// System: reads Transform, Material, ShadowFieldEmitter, RenderInstance, RenderLight. Appends to
+// `out`.
+void gatherChanged(const ecs::SystemContext& context, SceneChanges& out);
+
+void applyChanges(const SceneChanges& changes, GpuScene& scene);
 
 } // namespace penumbra

@@ -152,11 +152,12 @@ void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTarge
                     kCopySource);
 }
 
-Result<FramePasses> createFramePasses(const Device& device)
+Result<FramePasses> createFramePasses(const Device& device, bool localLights)
 {
     const std::vector<Binding> scene(sceneBindings().begin(), sceneBindings().end());
     const std::uint32_t perInvocation = receiversPerInvocation(device);
     const auto selfScale = std::bit_cast<std::uint32_t>(kSelfVisibilityScale);
+    const std::uint32_t lights = localLights ? 1 : 0;
 
     FramePasses passes;
     Result<void> failed;
@@ -183,11 +184,11 @@ Result<FramePasses> createFramePasses(const Device& device)
     compute(passes.clusterCull, {.shader = "cluster_cull.comp", .bindings = scene});
     compute(passes.entitySort, {.shader = "entity_sort.comp", .bindings = scene});
     compute(passes.combineLiteral,
-            {.shader = "combine_literal.comp", .bindings = scene, .constants = {0, 0, selfScale}});
+            {.shader = "combine_literal.comp", .bindings = scene, .constants = {0, 0, selfScale, lights}});
     compute(passes.combineExact,
             {.shader = "combine_exact.comp",
              .bindings = scene,
-             .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale}});
+             .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale, lights}});
     compute(passes.post, {.shader = "post.comp",
                           .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                                        {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},

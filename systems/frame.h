@@ -20,7 +20,8 @@ struct FramePasses {
         return kernel == Kernel::Literal ? combineLiteral : combineExact;
     }
 };
-Result<FramePasses> createFramePasses(const Device& device);
+// `localLights`: kernels for scenes with lights of their own; without, they are smaller and faster.
+Result<FramePasses> createFramePasses(const Device& device, bool localLights);
 
 // Targets of one size.
 struct FrameTargets {

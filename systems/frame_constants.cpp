@@ -4,8 +4,61 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <utility>
 
 namespace penumbra {
+
+namespace {
+
+// Directions and weights that integrate products of two order-6 functions exactly: Gauss-Legendre
+// in z, equal turns about it.
+struct SphereRule {
+    static constexpr int kRows = 6, kTurns = 11;
+    std::array<glm::dvec4, kRows * kTurns> points; // w: weight
+
+    SphereRule()
+    {
+        for (int row = 0; row < kRows; ++row) {
+            // Newton's method from Chebyshev's nodes, on the Legendre recurrence.
+            double z = std::cos(std::numbers::pi * (row + 0.75) / (kRows + 0.5)), slope = 1;
+            for (int iteration = 0; iteration < 20; ++iteration) {
+                double previous = 1, value = z;
+                for (int l = 2; l <= kRows; ++l)
+                    previous = std::exchange(value, ((2 * l - 1) * z * value - (l - 1) * previous) / l);
+                slope = kRows * (z * value - previous) / (z * z - 1);
+                z -= value / slope;
+            }
+            const double s = std::sqrt(1 - z * z);
+            const double weight = 2 / (s * s * slope * slope) * 2 * std::numbers::pi / kTurns;
+            for (int turn = 0; turn < kTurns; ++turn) {
+                const double angle = 2 * std::numbers::pi * turn / kTurns;
+                points[static_cast<std::size_t>(row * kTurns + turn)] =
+                    glm::dvec4(s * std::cos(angle), s * std::sin(angle), z, weight);
+            }
+        }
+    }
+};
+
+using Basis6 = std::array<double, 36>;
+
+Basis6 basis6(glm::dvec3 direction)
+{
+    Basis6 basis{};
+    shBasisAnyOrder(6, direction, basis);
+    return basis;
+}
+
+glm::dvec3 radianceOf(const LightSh& light, glm::dvec3 direction)
+{
+    const Basis6 basis = basis6(direction);
+    glm::dvec3 radiance(0);
+    for (std::size_t k = 0; k < light.size(); ++k)
+        radiance += glm::dvec3(light[k]) * basis[k];
+    return radiance;
+}
+
+} // namespace
 
 View viewOf(const Camera& camera, float aspect)
 {
@@ -40,6 +93,23 @@ Environment aboveGround(const Environment& environment)
     return clipped;
 }
 
+LightSh rotatedLight(const LightSh& light, const mat3& rotation)
+{
+    static const SphereRule kRule;
+    const glm::dmat3 before = glm::transpose(glm::dmat3(rotation));
+    std::array<glm::dvec3, 36> sum{};
+    for (const glm::dvec4& point : kRule.points) {
+        const glm::dvec3 direction(point);
+        const glm::dvec3 radiance = point.w * radianceOf(light, before * direction);
+        const Basis6 basis = basis6(direction);
+        for (std::size_t k = 0; k < sum.size(); ++k)
+            sum[k] += radiance * basis[k];
+    }
+    LightSh rotated;
+    std::copy(sum.begin(), sum.end(), rotated.begin());
+    return rotated;
+}
+
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity)
 {
     FrameConstants frame{};
@@ -59,12 +129,8 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     for (int k = 0; k < 16; ++k)
         frame.light[k] = vec4(light[static_cast<std::size_t>(k)], 0);
     for (int n = 0; n < 32; ++n) {
-        std::array<double, 36> basis{};
-        shBasisAnyOrder(6, glm::dvec3(kShNodes[n]), basis);
-        vec3 radiance(0);
-        for (std::size_t k = 0; k < light.size(); ++k)
-            radiance += light[k] * static_cast<float>(basis[k]);
-        frame.lightNodes[n] = vec4(radiance * kShNodes[n].w, 0);
+        frame.lightNodes[n] =
+            vec4(vec3(radianceOf(light, glm::dvec3(kShNodes[n]))) * kShNodes[n].w, 0);
     }
     return frame;
 }

@@ -24,6 +24,9 @@ LightSh environmentLight(const Environment& environment, float intensity);
 // all receivers above the plane.
 Environment aboveGround(const Environment& environment);
 
+// Light that comes from d comes from `rotation` d afterwards.
+LightSh rotatedLight(const LightSh& light, const mat3& rotation);
+
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity);
 
 } // namespace penumbra

@@ -133,6 +133,7 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
                     "a scene has at least one instance");
     GpuScene scene;
     const std::uint64_t instances = data.instances.size(), clusters = data.clusters.size();
+    const std::uint64_t rows = rowCount(data);
     const std::uint32_t groups = device.properties.limits.maxComputeWorkGroupCount[0];
     if (clusters > groups)
         return Error{fmt::format("the scene has {} clusters of {} receivers, the device dispatches "
@@ -151,13 +152,12 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     b.bounds = maker.with("cluster bounds", data.bounds, kStorageUse);
     b.clusters = maker.with("clusters", data.clusters, kStorageUse);
     b.instances =
-        maker.empty("instances", instances * sizeof(GpuInstance),
+        maker.empty("instances", rows * sizeof(GpuInstance),
                     kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, VK_FORMAT_R32G32B32A32_SFLOAT);
     b.cull = maker.empty("cull result", sizeof(CullResult),
                          kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
     b.visible = maker.empty("visible clusters", clusters * 4, kTexelUse, VK_FORMAT_R32_UINT);
-    b.lists = maker.empty("occluder lists", clusters * (1 + kMaxClusterOccluders) * 4, kTexelUse,
-                          VK_FORMAT_R32_UINT);
+    b.lists = maker.empty("lists", clusters * kListStride * 4, kTexelUse, VK_FORMAT_R32_UINT);
     // Zeroed: a vertex of a culled cluster is read by the rasteriser for triangles that it then
     // drops.
     b.radiance = maker.with("radiance", std::vector<vec4>(data.radianceCount),
@@ -165,15 +165,13 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     b.drawTemplate = maker.with("draw template", drawTemplate(data), kStorageUse);
     b.drawCommands = maker.empty("draw commands", instances * sizeof(VkDrawIndexedIndirectCommand),
                                  kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    b.denseRotations =
-        maker.empty("dense rotations", instances * sizeof(DenseRotation), kStorageUse);
+    b.denseRotations = maker.empty("dense rotations", rows * sizeof(DenseRotation), kStorageUse);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
         GpuSceneSlot slot;
         slot.frame = maker.upload("frame constants", sizeof(FrameConstants),
                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-        slot.inputs =
-            maker.upload("instance inputs", instances * sizeof(InstanceInput), kStorageUse);
-        slot.changed = maker.upload("changed instances", instances * 4, kStorageUse);
+        slot.inputs = maker.upload("instance inputs", rows * sizeof(InstanceInput), kStorageUse);
+        slot.changed = maker.upload("changed instances", rows * 4, kStorageUse);
         scene.m_slots.push_back(std::move(slot));
     }
     if (!maker.result)
@@ -212,7 +210,7 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
             .sampledImage(20, b.environmentMap.view, b.environmentSampler)
             .write();
     }
-    scene.m_isChanged.assign(instances, false);
+    scene.m_isChanged.assign(rows, false);
     scene.m_data = std::move(data);
     scene.touchAll();
     return scene;
@@ -224,15 +222,28 @@ void GpuScene::setInstance(std::uint32_t index, const SceneInstance& instance)
                         instance.mesh == m_data.instances[index].mesh,
                     "instance {} of {} keeps its mesh", index, m_data.instances.size());
     m_data.instances[index] = instance;
-    if (!m_isChanged[index])
-        m_changed.push_back(index);
-    m_isChanged[index] = true;
+    touch(index);
+}
+
+void GpuScene::setLight(std::uint32_t index, const SceneLight& light)
+{
+    PENUMBRA_ASSERT(index < m_data.lights.size() && light.asset == m_data.lights[index].asset,
+                    "light {} of {} keeps its asset", index, m_data.lights.size());
+    m_data.lights[index] = light;
+    touch(static_cast<std::uint32_t>(m_data.instances.size()) + index);
+}
+
+void GpuScene::touch(std::uint32_t row)
+{
+    if (!m_isChanged[row])
+        m_changed.push_back(row);
+    m_isChanged[row] = true;
 }
 
 void GpuScene::touchAll()
 {
-    for (std::uint32_t i = 0; i < m_data.instances.size(); ++i)
-        setInstance(i, m_data.instances[i]);
+    for (std::uint32_t row = 0; row < rowCount(m_data); ++row)
+        touch(row);
 }
 
 void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constants)
@@ -241,9 +252,10 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     FrameConstants frame = constants;
     frame.clusterCount = static_cast<std::uint32_t>(m_data.clusters.size());
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
+    frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
     for (std::size_t i = 0; i < m_changed.size(); ++i) {
-        const InstanceInput input = instanceInput(m_data, m_data.instances[m_changed[i]]);
+        const InstanceInput input = rowInput(m_data, m_changed[i]);
         std::memcpy(slot.inputs.mapped + i * sizeof(input), &input, sizeof(input));
         std::memcpy(slot.changed.mapped + i * 4, &m_changed[i], 4);
         m_isChanged[m_changed[i]] = false;

@@ -28,8 +28,8 @@ struct GpuSceneBuffers {
 // What the CPU writes for one frame in flight.
 struct GpuSceneSlot {
     Buffer frame;   // FrameConstants
-    Buffer inputs;  // [instanceCount] InstanceInput of the changed instances, packed
-    Buffer changed; // [instanceCount] their indices
+    Buffer inputs;  // [rowCount] InstanceInput of the changed rows, packed
+    Buffer changed; // [rowCount] their indices
     std::uint32_t changedCount = 0;
     VkDescriptorSet set = VK_NULL_HANDLE;
 };
@@ -41,13 +41,14 @@ public:
     static Result<GpuScene> create(const Device& device, SceneData data,
                                    const Environment& environment, std::uint32_t framesInFlight);
 
-    // The instance moves or changes its material from the next frame on.
+    // The instance moves or changes its material from the next frame on; the light likewise.
     void setInstance(std::uint32_t index, const SceneInstance& instance);
+    void setLight(std::uint32_t index, const SceneLight& light);
 
-    // Writes what the frame of `slot` reads: constants and changed instances.
+    // Writes what the frame of `slot` reads: constants and changed rows.
     void writeFrame(std::uint32_t slot, const FrameConstants& constants);
 
-    // All instances count as changed: after another kernel was chosen, which needs other constants.
+    // All rows count as changed: after another kernel was chosen, which needs other constants.
     void touchAll();
 
     [[nodiscard]] const SceneData& data() const { return m_data; }
@@ -55,12 +56,14 @@ public:
     [[nodiscard]] const GpuSceneSlot& slot(std::uint32_t index) const { return m_slots[index]; }
 
 private:
+    void touch(std::uint32_t row);
+
     SceneData m_data;
     GpuSceneBuffers m_buffers;
     DescriptorSets m_sets;
     UniqueDescriptorSetLayout m_layout;
     std::vector<GpuSceneSlot> m_slots;
-    std::vector<std::uint32_t> m_changed; // instances to upload, each once
+    std::vector<std::uint32_t> m_changed; // rows to upload, each once
     std::vector<bool> m_isChanged;
 };
 

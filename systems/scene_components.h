@@ -11,7 +11,7 @@ namespace penumbra {
 inline void registerSceneComponents()
 {
     ecs::registerComponents<ecs::Name, ecs::Parent, ecs::PrefabPart, Transform, MeshInstance,
-                            Material, ShadowFieldOccluder, RigidBody, Camera>();
+                            Material, ShadowFieldOccluder, ShadowFieldEmitter, RigidBody, Camera>();
 }
 
 } // namespace penumbra

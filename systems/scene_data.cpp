@@ -43,20 +43,55 @@ void appendField(const ShadowField& field, SceneData& scene)
     input.outerRadius = field.outerRadius;
     scene.fields.push_back(input);
 
-    scene.fieldSamples.resize(scene.fieldSamples.size() + std::size_t{side} * side * input.shells);
-    uvec4* const samples = scene.fieldSamples.data() + input.firstSample;
     const std::size_t nodes = std::size_t{side} * side;
-    const std::vector<std::uint8_t> texels = refineField(field, 0);
-    for (std::size_t s = 0; s < input.shells; ++s)
-        for (std::size_t node = 0; node < nodes; ++node)
-            std::memcpy(&samples[node * input.shells + s],
-                        &texels[(s * nodes + node) * kFieldCoefficients], kFieldCoefficients);
+    for (std::uint32_t channel = 0; channel < field.channels; ++channel) {
+        const std::vector<std::uint8_t> texels = refineField(field, channel);
+        const std::size_t first = scene.fieldSamples.size();
+        scene.fieldSamples.resize(first + nodes * input.shells);
+        for (std::size_t s = 0; s < input.shells; ++s)
+            for (std::size_t node = 0; node < nodes; ++node)
+                std::memcpy(&scene.fieldSamples[first + node * input.shells + s],
+                            &texels[(s * nodes + node) * kFieldCoefficients], kFieldCoefficients);
+    }
+}
+
+// Of a field's place in the world; the rest is zero.
+InstanceInput placed(vec3 position, float scale, vec4 rotation)
+{
+    InstanceInput input{};
+    input.position = position;
+    input.scale = scale;
+    input.rotation = rotation;
+    input.field = kNoField;
+    input.owner = kNoOwner;
+    return input;
+}
+
+bool hasField(const SceneData& scene, std::uint32_t asset, FieldKind kind)
+{
+    return asset < scene.meshes.size() && scene.meshes[asset].field != kNoField &&
+           scene.meshes[asset].fieldKind == kind;
+}
+
+void checkNames(const SceneData& scene)
+{
+    for (const SceneInstance& instance : scene.instances) {
+        PENUMBRA_ASSERT(instance.mesh < scene.meshes.size(), "an instance names mesh {} of {}",
+                        instance.mesh, scene.meshes.size());
+        PENUMBRA_ASSERT(!instance.occluder ||
+                            hasField(scene, *instance.occluder, FieldKind::Occlusion),
+                        "an instance blocks light by asset {}, which has no occlusion field",
+                        *instance.occluder);
+    }
+    for (const SceneLight& light : scene.lights)
+        PENUMBRA_ASSERT(hasField(scene, light.asset, FieldKind::Radiance),
+                        "a light shines by asset {}, which has no radiance field", light.asset);
 }
 
 } // namespace
 
 SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
-                         std::vector<SceneInstance> instances)
+                         std::vector<SceneInstance> instances, std::vector<SceneLight> lights)
 {
     SceneData scene;
     for (const MeshAsset* mesh : meshes) {
@@ -72,8 +107,11 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
                                     vec4(cluster.vertices.axis, cluster.vertices.cutoff)});
         if (mesh->field) {
             range.field = static_cast<std::uint32_t>(scene.fields.size());
+            range.fieldKind = mesh->field->kind;
             appendField(*mesh->field, scene);
         }
+        if (!mesh->materials.empty())
+            range.emission = mesh->materials.front().emissive;
         scene.meshes.push_back(range);
     }
     if (scene.fields.empty()) { // a scene without occluders still binds its buffers
@@ -82,10 +120,9 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
     }
 
     scene.instances = std::move(instances);
+    scene.lights = std::move(lights);
+    checkNames(scene);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        PENUMBRA_ASSERT(scene.instances[i].mesh < scene.meshes.size(),
-                        "instance {} names mesh {} of {}", i, scene.instances[i].mesh,
-                        scene.meshes.size());
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
         scene.firstRadiance.push_back(scene.radianceCount);
         for (std::uint32_t c = 0; c < mesh.clusterCount; ++c)
@@ -99,16 +136,29 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
     return scene;
 }
 
-InstanceInput instanceInput(const SceneData& scene, const SceneInstance& instance)
+std::uint32_t rowCount(const SceneData& scene)
 {
-    InstanceInput input{};
-    input.position = instance.position;
-    input.scale = instance.scale;
-    input.rotation = instance.rotation;
+    return static_cast<std::uint32_t>(scene.instances.size() + scene.lights.size());
+}
+
+InstanceInput rowInput(const SceneData& scene, std::uint32_t row)
+{
+    if (row >= scene.instances.size()) {
+        const SceneLight& light = scene.lights[row - scene.instances.size()];
+        InstanceInput input = placed(light.position, light.scale, light.rotation);
+        input.albedo = light.intensity;
+        input.field = scene.meshes[light.asset].field;
+        input.owner = light.owner.value_or(kNoOwner);
+        return input;
+    }
+    const SceneInstance& instance = scene.instances[row];
+    InstanceInput input = placed(instance.position, instance.scale, instance.rotation);
     input.albedo = instance.material.albedo;
     input.glossFraction = instance.material.glossFraction;
     input.glossExponent = instance.material.glossExponent;
-    input.field = instance.occluder ? scene.meshes[instance.mesh].field : kNoField;
+    input.emission = instance.emission * scene.meshes[instance.mesh].emission;
+    if (instance.occluder)
+        input.field = scene.meshes[*instance.occluder].field;
     return input;
 }
 

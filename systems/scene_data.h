@@ -7,18 +7,32 @@
 #include "shaders/shared/instance.h"
 #include "shaders/shared/transfer.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace penumbra {
 
 struct SceneInstance {
-    std::uint32_t mesh = 0; // index of a mesh asset
+    std::uint32_t mesh = 0; // index of an asset
     vec3 position{0};       // world, metres
     float scale = 1;
     vec4 rotation{0, 0, 0, 1}; // quaternion x, y, z, w
     MeshMaterial material;
-    bool occluder = true; // blocks light, if its asset has a field
+    std::optional<std::uint32_t> occluder; // asset whose field says what the instance blocks
+    vec3 emission{0}; // factor of the mesh's own radiance: what it shines as the owner of a light
+};
+
+// A local light. Radiance does not change with the scale, so power goes with its square.
+struct SceneLight {
+    std::uint32_t asset = 0; // with a radiance field
+    vec3 position{0};        // world, metres
+    float scale = 1;
+    vec4 rotation{0, 0, 0, 1}; // quaternion x, y, z, w
+    vec3 intensity{1};         // factor of the field
+    // The instance that is its surface: it is not lit by the light, and does not dim it beyond what
+    // the field knows.
+    std::optional<std::uint32_t> owner;
 };
 
 // Where an asset lies in the arrays below.
@@ -28,6 +42,8 @@ struct MeshRange {
     std::uint32_t firstIndex = 0, indexCount = 0;
     std::uint32_t firstBounds = 0, clusterCount = 0;
     std::uint32_t field = kNoField;
+    FieldKind fieldKind = FieldKind::Occlusion;
+    vec3 emission{0}; // of its surface, where it is a light: W/(m² sr)
 };
 
 struct SceneData {
@@ -37,9 +53,10 @@ struct SceneData {
     std::vector<std::uint32_t> indices; // relative to the mesh's firstReceiver
     std::vector<ClusterBounds> bounds;
     std::vector<FieldInput> fields;  // at least one
-    std::vector<uvec4> fieldSamples; // one side per field: its largest
+    std::vector<uvec4> fieldSamples; // of a field [channel][y][x][shell], one side: its largest
 
     std::vector<SceneInstance> instances;
+    std::vector<SceneLight> lights;
     std::vector<SceneCluster> clusters; // [sum over instances of clusterCount]
     std::vector<std::uint32_t>
         firstRadiance; // [instanceCount] of the instance's receivers in the radiance buffer
@@ -47,9 +64,13 @@ struct SceneData {
     std::uint64_t vertexCount = 0, triangleCount = 0; // of all instances, without padding
 };
 
+// Every instance and light names an asset below meshes.size(), a light one with a radiance field,
+// an occluder one with an occlusion field (asserted).
 SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
-                         std::vector<SceneInstance> instances);
+                         std::vector<SceneInstance> instances, std::vector<SceneLight> lights = {});
 
-InstanceInput instanceInput(const SceneData& scene, const SceneInstance& instance);
+// Rows of the GPU's instance table: instances, then lights.
+std::uint32_t rowCount(const SceneData& scene);
+InstanceInput rowInput(const SceneData& scene, std::uint32_t row);
 
 } // namespace penumbra

@@ -1,4 +1,4 @@
-// What a frame knows of an instance, a field, a cluster and itself: the structs that CPU and GPU
+// What a frame knows of an instance, a light, a field, a cluster and itself: the structs that CPU and GPU
 // share, and the maths that turns a transform into the constants of the combine kernels. Layout:
 // scalar; offsets checked in tests/systems.
 #ifndef PENUMBRA_SHADERS_SHARED_INSTANCE_H
@@ -7,24 +7,35 @@
 PENUMBRA_BEGIN
 
 PENUMBRA_CONST uint kNoField = 0xffffffffu;
+PENUMBRA_CONST uint kNoOwner = 0xffffffffu;
 PENUMBRA_CONST uint kClusterReceivers =
     64u; // receivers per cluster; a mesh's last cluster is padded to it
 PENUMBRA_CONST uint kMaxClusterOccluders =
     32u; // list entries per cluster; farther ones are dropped and counted
+PENUMBRA_CONST uint kMaxClusterLights = 16u; // local lights per cluster; likewise
+// What pass entity_sort writes per visible cluster: counts of occluders and lights; rows of the
+// occluders, near to far; of each light, near to far, its row, how many leading occluders stand
+// before it at every receiver, and which of the others may, as bits.
+PENUMBRA_CONST uint kListOccluders = 2u;
+PENUMBRA_CONST uint kListLights = kListOccluders + kMaxClusterOccluders;
+PENUMBRA_CONST uint kListStride = kListLights + 3u * kMaxClusterLights;
 PENUMBRA_CONST uint kSortGroup = 16u;         // clusters per workgroup of entity_sort: one per lane
-PENUMBRA_CONST uint kGpuInstanceTexels = 10u; // vec4 rows of a GpuInstance
+PENUMBRA_CONST uint kGpuInstanceTexels = 11u; // vec4 rows of a GpuInstance
 
-// Written by the CPU when the entity changed.
+// Written by the CPU when the entity changed: an instance, or a local light, which has a radiance
+// field and no mesh of its own.
 struct InstanceInput {
     vec3 position;       // of the object's origin, world, metres
     float scale;         // uniform
     vec4 rotation;       // quaternion x, y, z, w: world from object
-    vec3 albedo;         // linear Rec. 709
+    vec3 albedo;         // linear Rec. 709; of a light, the factor of its field
     float glossFraction; // part of the reflectance in the Phong lobe
     float glossExponent;
-    uint field; // index of a FieldInput, kNoField: not an occluder
-    uint padding0;
-    uint padding1;
+    uint field;    // index of a FieldInput, kNoField: not an occluder
+    uint owner;    // of a light: the instance that is its surface, kNoOwner: none
+    float padding0;
+    vec3 emission; // radiance of the surface itself, W/(m² sr)
+    float padding1;
 };
 
 // One per field asset.
@@ -51,13 +62,14 @@ struct GpuInstance {
     vec4 alphaBeta; // world from object = Rz(alpha) Ry(beta) Rz(gamma): cos, sin of alpha, of beta
     vec4 gammaShells; // cos gamma, sin gamma, shellScale, shellBias
     vec4 grid; // firstSample, side, shell count: whole numbers; influence radius (world, metres; 0:
-               // not an occluder)
+               // no field)
     vec4 bandScale;
     vec4 worldFromObject0;
     vec4 worldFromObject1;
     vec4 worldFromObject2;
     vec4 material;  // albedo, glossFraction
-    vec4 material1; // glossExponent, scale, 0, 0
+    vec4 material1; // glossExponent, scale, of a light: owner + 1 (0: none), 0
+    vec4 emission;  // w unused
 };
 
 // Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
@@ -81,7 +93,7 @@ struct CullResult {
     uint
         combineGroups[3]; // VkDispatchIndirectCommand of combine: one workgroup per visible cluster
     uint pairs;           // cluster-occluder pairs that are combined
-    uint dropped;         // pairs beyond kMaxClusterOccluders
+    uint dropped;         // pairs beyond kMaxClusterOccluders or kMaxClusterLights
 };
 
 // Constants of one frame.
@@ -93,9 +105,13 @@ struct FrameConstants {
     vec4 lightNodes[32]; // environment radiance at kShNodes times the node's weight; w unused
     vec4 light[16];      // environment radiance in SH
     uint clusterCount;
-    uint instanceCount;
+    uint instanceCount;  // the rows of lights follow those of instances
+    uint lightCount;
     uint denseRotations; // 1: instance_update writes the matrices of kernel literal too
     float backgroundIntensity;
+    float padding0;
+    float padding1;
+    float padding2;
 };
 
 // A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
@@ -148,7 +164,9 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
     g.worldFromObject2 =
         vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
     g.material = vec4(i.albedo, i.glossFraction);
-    g.material1 = vec4(i.glossExponent, i.scale, 0.0f, 0.0f);
+    g.material1 =
+        vec4(i.glossExponent, i.scale, i.owner == kNoOwner ? 0.0f : float(i.owner + 1u), 0.0f);
+    g.emission = vec4(i.emission, 0.0f);
     return g;
 }
 
@@ -253,15 +271,15 @@ PENUMBRA_FN Sh4 shRotateDense(Sh4 f, DenseRotation d)
 PENUMBRA_END
 
 #ifdef __cplusplus
-static_assert(sizeof(penumbra::InstanceInput) == 64 &&
-              offsetof(penumbra::InstanceInput, albedo) == 32);
+static_assert(sizeof(penumbra::InstanceInput) == 80 &&
+              offsetof(penumbra::InstanceInput, emission) == 64);
 static_assert(sizeof(penumbra::FieldInput) == 64 &&
               offsetof(penumbra::FieldInput, firstSample) == 32);
 static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
 static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 1024 &&
+static_assert(sizeof(penumbra::FrameConstants) == 1040 &&
               offsetof(penumbra::FrameConstants, clusterCount) == 1008);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif

@@ -157,5 +157,20 @@ PENUMBRA_FN Sh4 shRotate(Sh4 f, ShRotation r)
     return shRotateZ(shRotateX270(shRotateZ(shRotateX90(shRotateZ(f, r.gamma)), r.beta)), r.alpha);
 }
 
+PENUMBRA_FN ShTurn shInverse(ShTurn turn)
+{
+    turn.s = -turn.s;
+    return turn;
+}
+
+PENUMBRA_FN ShRotation shInverse(ShRotation r)
+{
+    ShRotation inverse;
+    inverse.gamma = shInverse(r.alpha);
+    inverse.beta = shInverse(r.beta);
+    inverse.alpha = shInverse(r.gamma);
+    return inverse;
+}
+
 PENUMBRA_END
 #endif

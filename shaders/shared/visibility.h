@@ -37,5 +37,14 @@ PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cuto
     return highest < -(radius + sphereRadius);
 }
 
+// How much a sphere counts for one receiver: 0 once it lies under the receiver's horizon, where the
+// products of order 4 would still leak, 1 from where its centre has risen; so what belowHorizon drops
+// had no weight. to = its centre - the receiver.
+PENUMBRA_FN float horizonWeight(vec3 normal, vec3 to, float sphereRadius)
+{
+    const float t = clamp(1.0f + dot(normal, to) / sphereRadius, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
 PENUMBRA_END
 #endif

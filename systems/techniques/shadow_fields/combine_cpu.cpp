@@ -1,8 +1,10 @@
 #include "systems/techniques/shadow_fields/combine_cpu.h"
 
+#include "shaders/shared/order.h"
 #include "shaders/shared/visibility.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace penumbra {
 
@@ -29,28 +31,172 @@ ClusterSphere worldBounds(const ClusterBounds& bounds, const GpuInstance& g)
     return s;
 }
 
-Sh4 sampleTrilinear(const std::vector<uvec4>& samples, const FieldEntity& entity, const vec3& p)
+using Samples = std::vector<uvec4>;
+
+Sh4 sampleTrilinear(const Samples& samples, std::uint32_t sample0, const FieldCell& cell,
+                    const FieldGrid& grid)
 {
-    const FieldCell cell = fieldCell(p, entity.grid);
     Sh4 sum{};
     for (uint corner = 0; corner < 8; ++corner) {
-        const Sh4 steps =
-            fieldSteps(samples[cell.sample0 + fieldCornerOffset(corner, entity.grid)]);
+        const Sh4 steps = fieldSteps(samples[sample0 + fieldCornerOffset(corner, grid)]);
         const float weight = fieldCornerWeight(corner, cell.fraction);
         for (int k = 0; k < 16; ++k)
             sum.c[k] += weight * steps.c[k];
     }
-    return fieldVisibility(sum, entity.bandScale * cell.decay);
+    return sum;
 }
 
-Sh4 sampleTetrahedral(const std::vector<uvec4>& samples, const FieldEntity& entity, const vec3& p)
+Sh4 sampleTetrahedral(const Samples& samples, std::uint32_t sample0, const FieldTetrahedron& t)
 {
-    const FieldCell cell = fieldCell(p, entity.grid);
-    const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
-    const Sh4 steps = fieldBlend(samples[cell.sample0], samples[cell.sample0 + t.offset.y],
-                                 samples[cell.sample0 + t.offset.z],
-                                 samples[cell.sample0 + t.offset.w], t.weight);
-    return fieldVisibility(steps, entity.bandScale * (cell.decay * (1.0f / 256.0f)));
+    return fieldBlend(samples[sample0], samples[sample0 + t.offset.y],
+                      samples[sample0 + t.offset.z], samples[sample0 + t.offset.w], t.weight);
+}
+
+// Kernel literal for one receiver.
+struct LiteralProduct {
+    const SceneData& scene;
+    const CpuInstances& rows;
+    vec3 position, normal; // of the receiver
+
+    [[nodiscard]] Sh4 occlude(const Sh4& transfer, std::uint32_t row, float weight) const
+    {
+        const FieldEntity entity = instanceField(rows.instances[row]);
+        const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
+        const Sh4 visibility = fieldVisibility(
+            sampleTrilinear(scene.fieldSamples, cell.sample0, cell, entity.grid),
+            entity.bandScale * (weight * cell.decay));
+        return shProduct(shRotateDense(visibility, rows.dense[row]), transfer);
+    }
+
+    [[nodiscard]] vec3 lightThrough(const Sh4& transfer, std::uint32_t row) const
+    {
+        const FieldEntity entity = instanceField(rows.instances[row]);
+        const FieldGrid& grid = entity.grid;
+        const FieldCell cell = fieldCell(fieldPoint(entity, position), grid);
+        vec3 b(0);
+        for (uint channel = 0; channel < 3; ++channel) {
+            const std::uint32_t sample0 =
+                cell.sample0 + channel * grid.side * grid.side * grid.shells;
+            const Sh4 source =
+                fieldDeviation(sampleTrilinear(scene.fieldSamples, sample0, cell, grid),
+                               entity.bandScale * cell.decay);
+            b[static_cast<int>(channel)] = shDot(shRotateDense(source, rows.dense[row]), transfer);
+        }
+        return b;
+    }
+};
+
+// Kernel exact for one receiver.
+struct ExactProduct {
+    const SceneData& scene;
+    const CpuInstances& rows;
+    vec3 position, normal; // of the receiver
+
+    [[nodiscard]] ShNodal occlude(const ShNodal& transfer, std::uint32_t row, float weight) const
+    {
+        const FieldEntity entity = instanceField(rows.instances[row]);
+        const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
+        const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
+        const Sh4 visibility =
+            fieldVisibility(sampleTetrahedral(scene.fieldSamples, cell.sample0, t),
+                            entity.bandScale * (weight * cell.decay * (1.0f / 256.0f)));
+        return shMultiply(transfer, shNodes(shRotate(visibility, entity.rotation)));
+    }
+
+    [[nodiscard]] vec3 lightThrough(const ShNodal& transfer, std::uint32_t row) const
+    {
+        const FieldEntity light = instanceField(rows.instances[row]);
+        const FieldGrid& grid = light.grid;
+        const FieldCell cell = fieldCell(fieldPoint(light, position), grid);
+        const FieldTetrahedron t = fieldTetrahedron(cell.fraction, grid);
+        const Sh4 local =
+            fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)),
+                           light.bandScale * (cell.decay * (1.0f / 256.0f)));
+        vec3 b(0);
+        for (uint channel = 0; channel < 3; ++channel)
+            b[static_cast<int>(channel)] = shDot(
+                local, sampleTetrahedral(
+                           scene.fieldSamples,
+                           cell.sample0 + channel * grid.side * grid.side * grid.shells, t));
+        return b;
+    }
+};
+
+// Through the occluders near to far, with each light where it stands. Adds the lights' part to
+// `sum`; returns the transfer behind the last occluder, for the environment.
+template <class Product, class Transfer>
+Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& entities, vec3& sum)
+{
+    const auto risen = [&](std::uint32_t row) {
+        const vec4 sphere = product.rows.instances[row].sphere;
+        return horizonWeight(product.normal, vec3(sphere) - product.position, sphere.w);
+    };
+    std::uint32_t next = 0;
+    for (const ClusterLight& light : entities.lights) {
+        for (; next < light.before; ++next)
+            transfer = product.occlude(transfer, entities.occluders[next],
+                                       risen(entities.occluders[next]));
+        Transfer through = transfer;
+        const GpuInstance& source = product.rows.instances[light.row];
+        for (std::uint32_t bits = light.possible; bits != 0; bits &= bits - 1) {
+            const std::uint32_t row =
+                entities.occluders[static_cast<std::size_t>(std::countr_zero(bits))];
+            const float order = orderWeight(product.rows.instances[row].sphere, source.sphere,
+                                            product.position);
+            through = product.occlude(through, row, order * risen(row));
+        }
+        sum += risen(light.row) * vec3(source.material) * product.lightThrough(through, light.row);
+    }
+    for (; next < entities.occluders.size(); ++next)
+        transfer = product.occlude(transfer, entities.occluders[next],
+                                   risen(entities.occluders[next]));
+    return transfer;
+}
+
+// The lists of pass entity_sort for one cluster.
+ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
+                             std::uint32_t clusterIndex, const ClusterSphere& s)
+{
+    const SceneCluster& cluster = scene.clusters[clusterIndex];
+    const float cutoff = scene.bounds[cluster.bounds].vertices.w;
+    std::vector<std::pair<float, std::uint32_t>> occluders, lights;
+    for (std::uint32_t i = 0; i < rows.instances.size(); ++i) {
+        const GpuInstance& g = rows.instances[i];
+        const vec3 to = vec3(g.sphere) - s.center;
+        if (g.grid.w == 0 || length(to) - s.radius > g.grid.w ||
+            belowHorizon(to, g.sphere.w, s.vertexAxis, cutoff, s.radius))
+            continue;
+        const bool light = i >= scene.instances.size();
+        if (light ? static_cast<std::uint32_t>(g.material1.z) != cluster.instance + 1
+                  : i != cluster.instance)
+            (light ? lights : occluders).emplace_back(powerDistance(g.sphere, s.center), i);
+    }
+    std::sort(occluders.begin(), occluders.end());
+    std::sort(lights.begin(), lights.end());
+    occluders.resize(std::min<std::size_t>(occluders.size(), kMaxClusterOccluders));
+    lights.resize(std::min<std::size_t>(lights.size(), kMaxClusterLights));
+
+    ClusterEntities out{clusterIndex, {}, std::vector<ClusterLight>(lights.size())};
+    for (const auto& [power, row] : occluders)
+        out.occluders.push_back(row);
+    auto before = static_cast<std::uint32_t>(occluders.size());
+    for (std::size_t l = lights.size(); l-- > 0;) {
+        const GpuInstance& g = rows.instances[lights[l].second];
+        std::uint32_t certain = 0, possible = 0;
+        for (std::uint32_t i = 0; i < occluders.size(); ++i) {
+            const bool own = out.occluders[i] + 1 == static_cast<std::uint32_t>(g.material1.z);
+            const float weight =
+                own ? 0
+                    : orderWeightAround(rows.instances[out.occluders[i]].sphere, g.sphere, s.center,
+                                        s.radius);
+            possible |= weight > 0 ? 1u << i : 0u;
+            certain += certain == i && weight == 1 ? 1u : 0u;
+        }
+        before = std::min(before, certain);
+        out.lights[l] = {lights[l].second, before,
+                         before < 32 ? possible >> before << before : 0u};
+    }
+    return out;
 }
 
 } // namespace
@@ -58,8 +204,8 @@ Sh4 sampleTetrahedral(const std::vector<uvec4>& samples, const FieldEntity& enti
 CpuInstances updateInstances(const SceneData& scene)
 {
     CpuInstances out;
-    for (const SceneInstance& instance : scene.instances) {
-        const InstanceInput input = instanceInput(scene, instance);
+    for (std::uint32_t row = 0; row < rowCount(scene); ++row) {
+        const InstanceInput input = rowInput(scene, row);
         out.instances.push_back(
             makeInstance(input, scene.fields[input.field == kNoField ? 0 : input.field]));
         out.dense.push_back(denseRotation(instanceRotation(out.instances.back())));
@@ -67,11 +213,10 @@ CpuInstances updateInstances(const SceneData& scene)
     return out;
 }
 
-std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances,
-                                          const FrameConstants& frame)
+std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstances& instances,
+                                         const FrameConstants& frame)
 {
-    std::vector<ClusterOccluders> visible;
-    std::vector<std::pair<float, std::uint32_t>> near;
+    std::vector<ClusterEntities> visible;
     for (std::uint32_t c = 0; c < scene.clusters.size(); ++c) {
         const SceneCluster& cluster = scene.clusters[c];
         const ClusterBounds& bounds = scene.bounds[cluster.bounds];
@@ -80,33 +225,17 @@ std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInsta
             std::any_of(std::begin(frame.frustum), std::end(frame.frustum), [&](const vec4& plane) {
                 return sphereOutside(plane, s.center, s.radius);
             });
-        if (outside || facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
-            continue;
-
-        near.clear();
-        for (std::uint32_t i = 0; i < instances.instances.size(); ++i) {
-            const GpuInstance& g = instances.instances[i];
-            const vec3 to = vec3(g.sphere) - s.center;
-            const float distance = length(to), influence = g.grid.w;
-            if (i == cluster.instance || influence == 0 || distance - s.radius > influence ||
-                belowHorizon(to, g.sphere.w, s.vertexAxis, bounds.vertices.w, s.radius))
-                continue;
-            near.emplace_back(distance, i);
-        }
-        std::sort(near.begin(), near.end());
-        near.resize(std::min<std::size_t>(near.size(), kMaxClusterOccluders));
-        visible.push_back({c, {}});
-        for (const auto& [distance, instance] : near)
-            visible.back().occluders.push_back(instance);
+        if (!outside && !facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
+            visible.push_back(sortEntities(scene, instances, c, s));
     }
     return visible;
 }
 
 void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
-                    const FrameConstants& frame, const ClusterOccluders& visible,
+                    const FrameConstants& frame, const ClusterEntities& entities,
                     std::span<vec4> radiance)
 {
-    const SceneCluster& cluster = scene.clusters[visible.cluster];
+    const SceneCluster& cluster = scene.clusters[entities.cluster];
     const GpuInstance& self = instances.instances[cluster.instance];
     const ShRotation worldFromObject = instanceRotation(self);
     for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
@@ -115,29 +244,22 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
         const Sh4 ownVisibility = selfVisibility(texels.selfVisibility, kSelfVisibilityScale);
         vec3 sum(0);
         if (kernel == Kernel::Literal) {
-            Sh4 transfer = transferSh(
-                shRotateDense(ownVisibility, instances.dense[cluster.instance]), receiver);
-            for (const std::uint32_t occluder : visible.occluders) {
-                const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = fieldPoint(entity, receiver.position);
-                const Sh4 visibility = sampleTrilinear(scene.fieldSamples, entity, p);
-                transfer =
-                    shProduct(shRotateDense(visibility, instances.dense[occluder]), transfer);
-            }
+            const Sh4 transfer =
+                walk(LiteralProduct{scene, instances, receiver.position, receiver.normal},
+                     transferSh(shRotateDense(ownVisibility, instances.dense[cluster.instance]),
+                                receiver),
+                     entities, sum);
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);
         } else {
-            ShNodal transfer = transferNodal(shRotate(ownVisibility, worldFromObject), receiver);
-            for (const std::uint32_t occluder : visible.occluders) {
-                const FieldEntity entity = instanceField(instances.instances[occluder]);
-                const vec3 p = fieldPoint(entity, receiver.position);
-                const Sh4 visibility = sampleTetrahedral(scene.fieldSamples, entity, p);
-                transfer = shMultiply(transfer, shNodes(shRotate(visibility, entity.rotation)));
-            }
+            const ShNodal transfer =
+                walk(ExactProduct{scene, instances, receiver.position, receiver.normal},
+                     transferNodal(shRotate(ownVisibility, worldFromObject), receiver), entities,
+                     sum);
             for (int n = 0; n < 32; ++n)
                 sum += transfer.v[n] * vec3(frame.lightNodes[n]);
         }
-        radiance[cluster.firstRadiance + v] = vec4(vec3(self.material) * sum, 1);
+        radiance[cluster.firstRadiance + v] = vec4(vec3(self.material) * sum + vec3(self.emission), 1);
     }
 }
 

@@ -8,13 +8,20 @@
 
 namespace penumbra {
 
-// One visible cluster and its occluders, near to far.
-struct ClusterOccluders {
-    std::uint32_t cluster = 0;
-    std::vector<std::uint32_t> occluders; // instances
+// A local light of a cluster, as kListLights of shaders/shared/instance.h describes it.
+struct ClusterLight {
+    std::uint32_t row = 0, before = 0, possible = 0;
+    bool operator==(const ClusterLight&) const = default;
 };
 
-// Derived constants of all instances; `dense` for kernel literal.
+// One visible cluster with its occluders and lights, near to far.
+struct ClusterEntities {
+    std::uint32_t cluster = 0;
+    std::vector<std::uint32_t> occluders; // rows
+    std::vector<ClusterLight> lights;
+};
+
+// Derived constants of all rows; `dense` for kernel literal.
 struct CpuInstances {
     std::vector<GpuInstance> instances;
     std::vector<DenseRotation> dense;
@@ -22,13 +29,13 @@ struct CpuInstances {
 CpuInstances updateInstances(const SceneData& scene);
 
 // As passes cluster_cull and entity_sort, in cluster order.
-std::vector<ClusterOccluders> cullAndSort(const SceneData& scene, const CpuInstances& instances,
-                                          const FrameConstants& frame);
+std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstances& instances,
+                                         const FrameConstants& frame);
 
 // As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance`
 // [scene.radianceCount].
 void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
-                    const FrameConstants& frame, const ClusterOccluders& cluster,
+                    const FrameConstants& frame, const ClusterEntities& cluster,
                     std::span<vec4> radiance);
 
 } // namespace penumbra

@@ -31,16 +31,21 @@ protected:
         static const TestScene kScene = makeTestScene();
         return kScene;
     }
-
-    Drawn draw(Kernel kernel, std::uint32_t frames = 1)
+    static const TestScene& litScene()
     {
-        const FramePasses passes = take(createFramePasses(device()));
+        static const TestScene kScene = makeLitTestScene();
+        return kScene;
+    }
+
+    Drawn draw(const TestScene& scene, Kernel kernel, std::uint32_t frames = 1)
+    {
+        const FramePasses passes = take(createFramePasses(device(), !scene.data.lights.empty()));
         FrameTargets targets = take(createFrameTargets(device(), passes, {160, 120}));
-        GpuScene gpu = take(GpuScene::create(device(), scene().data, scene().environment, 2));
+        GpuScene gpu = take(GpuScene::create(device(), scene.data, scene.environment, 2));
         FrameRing ring(device());
         for (std::uint32_t i = 0; i < frames; ++i) {
             const GpuFrame frame = take(ring.beginFrame());
-            recordFrame(frame, passes, gpu, scene().constants, {kernel, true, 1}, targets);
+            recordFrame(frame, passes, gpu, scene.constants, {kernel, true, 1}, targets);
             take(ring.endFrame());
         }
         take(ring.waitIdle());
@@ -58,18 +63,18 @@ protected:
     }
 
     // Largest difference of the visible receivers' radiance, relative to `scale`.
-    void expectTwin(Kernel kernel, double tolerance, bool ofMaximum)
+    void expectTwin(const TestScene& scene, Kernel kernel, double tolerance, bool ofMaximum)
     {
-        const Drawn drawn = draw(kernel);
-        const CpuInstances instances = updateInstances(scene().data);
-        std::vector<vec4> cpu(scene().data.radianceCount);
+        const Drawn drawn = draw(scene, kernel);
+        const CpuInstances instances = updateInstances(scene.data);
+        std::vector<vec4> cpu(scene.data.radianceCount);
         double sum = 0, largest = 0, difference = 0;
         std::size_t count = 0;
-        for (const ClusterOccluders& cluster :
-             cullAndSort(scene().data, instances, scene().constants)) {
-            combineCluster(kernel, scene().data, instances, scene().constants, cluster, cpu);
+        for (const ClusterEntities& cluster :
+             cullAndSort(scene.data, instances, scene.constants)) {
+            combineCluster(kernel, scene.data, instances, scene.constants, cluster, cpu);
             for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
-                const std::size_t i = scene().data.clusters[cluster.cluster].firstRadiance + v;
+                const std::size_t i = scene.data.clusters[cluster.cluster].firstRadiance + v;
                 for (int c = 0; c < 3; ++c) {
                     sum += cpu[i][c];
                     largest = std::max(largest, static_cast<double>(cpu[i][c]));
@@ -90,7 +95,7 @@ protected:
 
 TEST_F(FrameTest, InstanceUpdateEqualsTwin)
 {
-    const Drawn drawn = draw(Kernel::Literal);
+    const Drawn drawn = draw(scene(), Kernel::Literal);
     const CpuInstances twin = updateInstances(scene().data);
     ASSERT_EQ(drawn.instances.size(), twin.instances.size());
     for (std::size_t i = 0; i < twin.instances.size(); ++i) {
@@ -105,23 +110,36 @@ TEST_F(FrameTest, InstanceUpdateEqualsTwin)
 
 TEST_F(FrameTest, CullAndSortEqualTwin)
 {
-    const Drawn drawn = draw(Kernel::Exact);
-    const std::vector<ClusterOccluders> twin =
-        cullAndSort(scene().data, updateInstances(scene().data), scene().constants);
-    EXPECT_LT(twin.size(), scene().data.clusters.size()); // something is culled …
+    const TestScene& scene = litScene();
+    const Drawn drawn = draw(scene, Kernel::Exact);
+    const std::vector<ClusterEntities> twin =
+        cullAndSort(scene.data, updateInstances(scene.data), scene.constants);
+    EXPECT_LT(twin.size(), scene.data.clusters.size()); // something is culled …
     ASSERT_GT(twin.size(), 10u);                          // … and not everything
     ASSERT_EQ(drawn.visible.size(), twin.size());
     std::map<std::uint32_t, std::size_t> slotOf;
     for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
         slotOf[drawn.visible[slot]] = slot;
-    std::uint32_t pairs = 0;
-    for (const ClusterOccluders& cluster : twin) {
+    std::uint32_t pairs = 0, before = 0, possible = 0;
+    for (const ClusterEntities& cluster : twin) {
         ASSERT_TRUE(slotOf.contains(cluster.cluster));
         const std::uint32_t* list =
-            &drawn.lists[slotOf[cluster.cluster] * (1 + kMaxClusterOccluders)];
-        EXPECT_EQ(std::vector<std::uint32_t>(list + 1, list + 1 + list[0]), cluster.occluders);
+            &drawn.lists[slotOf[cluster.cluster] * kListStride];
+        const std::uint32_t* const occluders = list + kListOccluders;
+        EXPECT_EQ(std::vector<std::uint32_t>(occluders, occluders + list[0]), cluster.occluders);
         pairs += list[0];
+        const std::uint32_t* const lights = list + kListLights;
+        ASSERT_EQ(list[1], cluster.lights.size());
+        for (std::size_t l = 0; l < cluster.lights.size(); ++l) {
+            const ClusterLight& light = cluster.lights[l];
+            EXPECT_EQ((ClusterLight{lights[3 * l], lights[3 * l + 1], lights[3 * l + 2]}), light);
+            EXPECT_GE(light.before, l == 0 ? 0 : cluster.lights[l - 1].before);
+            before += light.before;
+            possible += light.possible != 0;
+        }
     }
+    EXPECT_GT(before, 0u); // some occluders stand before a light for certain …
+    EXPECT_GT(possible, 0u); // … and some only for a part of the receivers
     EXPECT_EQ(drawn.cull.pairs, pairs);
     EXPECT_GT(pairs, twin.size()); // more than one occluder per cluster
     EXPECT_EQ(drawn.cull.dropped, 0u);
@@ -129,18 +147,20 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
 
 TEST_F(FrameTest, LiteralEqualsTwin)
 {
-    expectTwin(Kernel::Literal, 1e-4, false);
+    expectTwin(scene(), Kernel::Literal, 1e-4, false);
+    expectTwin(litScene(), Kernel::Literal, 1e-4, false);
 }
 
 // A weight of 1/256 may round the other way where the two differ in the last bit of a fraction.
 TEST_F(FrameTest, ExactEqualsTwin)
 {
-    expectTwin(Kernel::Exact, 3e-3, true);
+    expectTwin(scene(), Kernel::Exact, 3e-3, true);
+    expectTwin(litScene(), Kernel::Exact, 3e-3, true);
 }
 
 TEST_F(FrameTest, FramesRepeatBitByBit)
 {
-    const Drawn once = draw(Kernel::Exact), again = draw(Kernel::Exact, 3);
+    const Drawn once = draw(scene(), Kernel::Exact), again = draw(scene(), Kernel::Exact, 3);
     EXPECT_EQ(once.picture, again.picture);
     for (const std::uint32_t c : once.visible)
         for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {

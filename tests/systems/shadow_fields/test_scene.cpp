@@ -1,6 +1,10 @@
 #include "tests/systems/shadow_fields/test_scene.h"
 
 #include "assetc/bake.h"
+#include "assetc/light/flat_emitter.h"
+#include "assetc/light/light_field.h"
+#include "assetc/light/shape_mesh.h"
+#include "assetc/light/sphere_emitter.h"
 #include "shaders/shared/environment.h"
 
 #include <glm/gtc/constants.hpp>
@@ -23,6 +27,18 @@ MeshAsset finish(MeshAsset mesh, bool bake)
         mesh.selfVisibility = std::move(baked.selfVisibility);
         mesh.field = quantiseField(baked.field);
     }
+    return mesh;
+}
+
+MeshAsset makeLight(const Emitter& emitter, float innerRadius, MeshAsset mesh, vec3 radiance)
+{
+    mesh = finish(std::move(mesh), false);
+    Progress progress("test");
+    mesh.field = quantiseField(bakeLightField(
+        emitter,
+        {.shells = 14, .side = 17, .innerRadius = innerRadius, .outerRadius = 16}, progress));
+    mesh.materials.resize(1);
+    mesh.materials[0].emissive = radiance;
     return mesh;
 }
 
@@ -91,7 +107,21 @@ MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake)
     return finish(std::move(mesh), bake);
 }
 
-TestScene makeTestScene()
+MeshAsset makeSphereLight(float radius, vec3 radiance)
+{
+    return makeLight(SphereEmitter(radius, radiance), 1,
+                     makeShapeMesh({.shape = EmitterShape::Sphere, .radius = radius}), radiance);
+}
+
+MeshAsset makeRectangleLight(vec2 size, vec3 radiance)
+{
+    const LightSpec spec{.shape = EmitterShape::Rectangle, .emission = radiance, .size = size};
+    return makeLight(*FlatEmitter::make(spec, nullptr), 0.4f, makeShapeMesh(spec), radiance);
+}
+
+namespace {
+
+TestScene makeScene(bool lit)
 {
     TestScene scene;
     scene.assets.push_back(makeSphereAsset(0.5f, 16));
@@ -103,6 +133,7 @@ TestScene makeTestScene()
         const auto f = static_cast<float>(i);
         SceneInstance instance;
         instance.mesh = static_cast<std::uint32_t>(i % 2);
+        instance.occluder = instance.mesh;
         instance.position =
             vec3(1.5f * std::cos(2.1f * f), 0.5f + 0.12f * f, 1.4f * std::sin(2.1f * f));
         instance.scale = 0.6f + 0.08f * f;
@@ -124,14 +155,62 @@ TestScene makeTestScene()
         }
     scene.environment = makeEnvironment(width, height, std::move(map));
 
+    std::vector<SceneLight> lights;
+    if (lit) {
+        scene.assets.push_back(makeSphereLight(0.15f, vec3(20, 16, 10)));
+        scene.assets.push_back(makeRectangleLight(vec2(0.6f, 0.4f), vec3(3, 8, 20)));
+        lights.push_back({.asset = 3, .position = vec3(0.2f, 1.1f, 0.1f)});
+        lights.push_back({.asset = 3,
+                          .position = instances[4].position + vec3(0.3f, 0.2f, 0),
+                          .scale = 0.7f,
+                          .intensity = vec3(0.4f, 1, 0.6f)});
+        const vec4 facing = quaternion(1.8f, vec3(1, 0.3f, 0));
+        const vec3 above(-0.8f, 1.9f, 0.4f);
+        lights.push_back({.asset = 4,
+                          .position = above,
+                          .rotation = facing,
+                          .owner = static_cast<std::uint32_t>(instances.size())});
+        instances.push_back({.mesh = 4,
+                             .position = above,
+                             .rotation = facing,
+                             .material = {vec3(0.5f), 0, 0},
+                             .emission = vec3(1)});
+    }
     std::vector<const MeshAsset*> meshes;
     for (const MeshAsset& mesh : scene.assets)
         meshes.push_back(&mesh);
-    scene.data = buildSceneData(meshes, std::move(instances));
+    scene.data = buildSceneData(meshes, std::move(instances), std::move(lights));
     scene.view =
         viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
     scene.constants = frameConstants(scene.view, environmentLight(scene.environment, 1), 1);
     return scene;
+}
+
+} // namespace
+
+TestScene makeTestScene()
+{
+    return makeScene(false);
+}
+
+TestScene makeLitTestScene()
+{
+    return makeScene(true);
+}
+
+std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants)
+{
+    SceneData all = data;
+    for (ClusterBounds& bounds : all.bounds)
+        bounds.faces.w = -1; // seen from everywhere
+    FrameConstants frame = constants;
+    for (vec4& plane : frame.frustum)
+        plane = vec4(0, 0, 0, 1e9f);
+    const CpuInstances rows = updateInstances(all);
+    std::vector<vec4> radiance(all.radianceCount);
+    for (const ClusterEntities& cluster : cullAndSort(all, rows, frame))
+        combineCluster(kernel, all, rows, frame, cluster, radiance);
+    return radiance;
 }
 
 } // namespace penumbra

@@ -5,6 +5,7 @@
 #include "assets/environment.h"
 #include "systems/frame_constants.h"
 #include "systems/scene_data.h"
+#include "systems/techniques/shadow_fields/combine_cpu.h"
 
 namespace penumbra {
 
@@ -12,6 +13,10 @@ namespace penumbra {
 // 12 shells of 17², 256 directions).
 MeshAsset makeSphereAsset(float radius, int rows, bool bake = true);
 MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake = true);
+
+// Lights with a field of 14 shells of 17² up to 16 bounding radii.
+MeshAsset makeSphereLight(float radius, vec3 radiance);
+MeshAsset makeRectangleLight(vec2 size, vec3 radiance);
 
 struct TestScene {
     std::vector<MeshAsset> assets;
@@ -21,5 +26,12 @@ struct TestScene {
     FrameConstants constants;
 };
 TestScene makeTestScene();
+
+// Radiance of every receiver by the CPU twin, whatever the camera sees: [radianceCount].
+std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants);
+
+// The same with three lights among the objects: a sphere, the same half inside an object, and a
+// rectangle with a surface of its own.
+TestScene makeLitTestScene();
 
 } // namespace penumbra
