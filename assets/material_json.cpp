@@ -13,6 +13,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kTransformExtension = "KHR_texture_transform";
+constexpr const char* kStrengthExtension = "KHR_materials_emissive_strength";
 constexpr std::array<const char*, 3> kAlphaModes = {"OPAQUE", "MASK", "BLEND"};
 
 // Where a slot's texture stands: in pbrMetallicRoughness or in the material.
@@ -65,12 +66,7 @@ public:
         if (source.has("alphaCutoff"))
             material.alphaCutoff = source.number("alphaCutoff", 0, kMaxTextureNumber);
         material.doubleSided = source.has("doubleSided") && source.flag("doubleSided");
-        if (const JsonReader extensions = optionalObject(source, "extensions");
-            extensions.has(kFieldExtension)) {
-            const JsonReader gloss = extensions.member(kFieldExtension);
-            material.glossFraction = gloss.number("glossFraction", 0, 1);
-            material.glossExponent = gloss.number("glossExponent", 0, kMaxGlossExponent);
-        }
+        readExtensions(optionalObject(source, "extensions"), material);
         for (std::size_t slot = 0; slot < kSlots.size(); ++slot)
             readSlot(source, kSlots[slot], place, material, slot);
         return material;
@@ -86,6 +82,25 @@ private:
             return value.asNumber(0, 1);
         constexpr float kAny = std::numeric_limits<float>::max();
         return clamp(value.asNumber(-kAny, kAny), 0.0f, 1.0f);
+    }
+
+    static void readExtensions(const JsonReader& extensions, SurfaceMaterial& material)
+    {
+        if (extensions.has(kStrengthExtension))
+            material.emissive *= extensions.member(kStrengthExtension)
+                                     .number("emissiveStrength", 0, kMaxEmissive);
+        if (!extensions.has(kFieldExtension))
+            return;
+        const JsonReader ours = extensions.member(kFieldExtension);
+        if (ours.has("glossFraction")) {
+            material.glossFraction = ours.number("glossFraction", 0, 1);
+            material.glossExponent = ours.number("glossExponent", 0, kMaxGlossExponent);
+        }
+        if (ours.has("emissionCone")) {
+            const JsonReader cone = ours.member("emissionCone");
+            material.emissionCone.x = cone.element(0).asNumber(0, kMaxEmissionAngle);
+            material.emissionCone.y = cone.element(1).asNumber(0, kMaxEmissionAngle);
+        }
     }
 
     void setUnit(const JsonReader& object, const char* key, float& value) const
@@ -219,8 +234,16 @@ json materialJson(const SurfaceMaterial& material, GltfWriter& out)
                      {"roughnessFactor", material.roughness}}}};
     if (!material.name.empty())
         result["name"] = material.name;
-    if (material.emissive != vec3{0})
-        result["emissiveFactor"] = {material.emissive.r, material.emissive.g, material.emissive.b};
+    if (material.emissive != vec3{0}) {
+        const float strength =
+            std::max({1.0f, material.emissive.r, material.emissive.g, material.emissive.b});
+        const vec3 factor = material.emissive / strength;
+        result["emissiveFactor"] = {factor.r, factor.g, factor.b};
+        if (strength > 1) {
+            out.useExtension(kStrengthExtension);
+            result["extensions"][kStrengthExtension] = {{"emissiveStrength", strength}};
+        }
+    }
     if (material.alphaMode != AlphaMode::Opaque)
         result["alphaMode"] = kAlphaModes[static_cast<std::size_t>(material.alphaMode)];
     if (material.alphaMode == AlphaMode::Mask)
@@ -230,6 +253,9 @@ json materialJson(const SurfaceMaterial& material, GltfWriter& out)
     if (material.glossFraction > 0)
         result["extensions"][kFieldExtension] = {{"glossFraction", material.glossFraction},
                                                  {"glossExponent", material.glossExponent}};
+    if (material.emissionCone.y > 0)
+        result["extensions"][kFieldExtension]["emissionCone"] = {material.emissionCone.x,
+                                                                 material.emissionCone.y};
     for (std::size_t slot = 0; slot < kSlots.size(); ++slot) {
         if (!material.textures[slot])
             continue;

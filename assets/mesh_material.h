@@ -59,7 +59,10 @@ struct SurfaceMaterial : MeshMaterial {
     std::string name;
     float alpha = 1; // of the base colour factor
     float metallic = 0, roughness = 1;
-    vec3 emissive{0};
+    vec3 emissive{0}; // linear, at most kMaxEmissive; of a light (`assetc light`) in W/(m² sr)
+    // Of a spot light: I(a) of KHR_lights_punctual, inner and outer angle from the normal, radians;
+    // 0: the surface emits alike in all directions of its half space.
+    vec2 emissionCone{0};
     AlphaMode alphaMode = AlphaMode::Opaque;
     float alphaCutoff = 0.5f; // of Mask
     bool doubleSided = false;
@@ -68,6 +71,8 @@ struct SurfaceMaterial : MeshMaterial {
     bool operator==(const SurfaceMaterial&) const = default;
 };
 
+PENUMBRA_CONST float kMaxEmissive = 1e7f;
+PENUMBRA_CONST float kMaxEmissionAngle = 1.5707964f;
 PENUMBRA_CONST float kMaxGlossExponent = 1e5f;
 PENUMBRA_CONST float kMaxTextureNumber = 1e6f; // of texture coordinates and their transforms
 PENUMBRA_CONST std::uint32_t kMaxMeshMaterials = 256;

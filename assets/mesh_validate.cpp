@@ -126,10 +126,16 @@ Result<void> checkSurface(const SurfaceMaterial& material, const MeshAsset& mesh
     if (const auto checked = checkMaterial(material); !checked)
         return checked;
     for (const float factor :
-         {material.alpha, material.metallic, material.roughness, material.emissive.r,
-          material.emissive.g, material.emissive.b, material.occlusionStrength})
+         {material.alpha, material.metallic, material.roughness, material.occlusionStrength})
         if (!(factor >= 0 && factor <= 1))
             return Error{fmt::format("a factor of {}, allowed 0 to 1", factor)};
+    for (int c = 0; c < 3; ++c)
+        if (!(material.emissive[c] >= 0 && material.emissive[c] <= kMaxEmissive))
+            return Error{fmt::format("an emission of {}, allowed 0 to {}", material.emissive[c],
+                                     kMaxEmissive)};
+    if (const vec2 cone = material.emissionCone;
+        !(cone.x >= 0 && cone.y <= kMaxEmissionAngle && (cone.x < cone.y || cone == vec2(0))))
+        return Error{fmt::format("an emission cone of {} to {} radians", cone.x, cone.y)};
     if (!(material.alphaCutoff >= 0 && material.alphaCutoff <= kMaxTextureNumber) ||
         !(std::abs(material.normalScale) <= kMaxTextureNumber))
         return Error{fmt::format("alpha cutoff {}, normal scale {}", material.alphaCutoff,

@@ -32,6 +32,9 @@ public:
         return {radianceAt(position), {}};
     }
 
+    // Of the surface, where its picture is white; of a spot, along its axis. RGB, W/(m² sr).
+    [[nodiscard]] virtual vec3 surfaceRadiance() const = 0;
+
     // Flux through the whole surface without what it blocks itself, RGB, W.
     [[nodiscard]] virtual vec3 power() const = 0;
 

@@ -33,6 +33,7 @@ public:
 
     [[nodiscard]] Sphere bounds() const override;
     [[nodiscard]] RadianceSh radianceAt(vec3 position) const override;
+    [[nodiscard]] vec3 surfaceRadiance() const override { return m_scale; }
     [[nodiscard]] vec3 power() const override;
 
 private:

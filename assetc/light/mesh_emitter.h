@@ -26,6 +26,7 @@ public:
     [[nodiscard]] Sphere bounds() const override { return m_bounds; }
     [[nodiscard]] RadianceSh radianceAt(vec3 position) const override;
     [[nodiscard]] Estimate estimateAt(vec3 position) const override;
+    [[nodiscard]] vec3 surfaceRadiance() const override { return m_radiance; }
     [[nodiscard]] vec3 power() const override;
 
 private:

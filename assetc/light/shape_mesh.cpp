@@ -13,13 +13,15 @@ constexpr std::uint32_t kRectangleCells = 8; // per side: light varies over a la
 constexpr std::uint32_t kDiscRings = 4, kDiscSectors = 48;
 constexpr int kSphereSplits = 3; // 642 vertices
 
-// Vertices of one side in the plane z = 0, rings or rows; `back` is the same seen from behind.
-void addSide(MeshAsset& mesh, const std::vector<vec2>& points,
+// Vertices of one side in the plane z = 0, rings or rows; `back` is the same seen from behind. The
+// picture of the light covers `size` around the origin, its row 0 on top.
+void addSide(MeshAsset& mesh, const std::vector<vec2>& points, vec2 size,
              const std::vector<std::uint32_t>& indices, bool back)
 {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (const vec2 p : points) {
         mesh.positions.emplace_back(p.x, p.y, 0);
+        mesh.texcoords0.emplace_back(0.5f + p.x / size.x, 0.5f - p.y / size.y);
         mesh.normals.emplace_back(0, 0, back ? -1 : 1);
     }
     for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -44,9 +46,9 @@ MeshAsset makeRectangle(vec2 size, bool twoSided)
                 indices.push_back(k);
         }
     MeshAsset mesh;
-    addSide(mesh, points, indices, false);
+    addSide(mesh, points, size, indices, false);
     if (twoSided)
-        addSide(mesh, points, indices, true);
+        addSide(mesh, points, size, indices, true);
     return mesh;
 }
 
@@ -72,9 +74,9 @@ MeshAsset makeDisc(float radius, bool twoSided)
         }
     }
     MeshAsset mesh;
-    addSide(mesh, points, indices, false);
+    addSide(mesh, points, vec2(2 * radius), indices, false);
     if (twoSided)
-        addSide(mesh, points, indices, true);
+        addSide(mesh, points, vec2(2 * radius), indices, true);
     return mesh;
 }
 

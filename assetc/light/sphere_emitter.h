@@ -11,6 +11,7 @@ public:
 
     [[nodiscard]] Sphere bounds() const override { return {vec3(0), m_radius}; }
     [[nodiscard]] RadianceSh radianceAt(vec3 position) const override; // inside: as on the surface
+    [[nodiscard]] vec3 surfaceRadiance() const override { return m_radiance; }
     [[nodiscard]] vec3 power() const override;
 
 private:

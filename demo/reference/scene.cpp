@@ -153,7 +153,7 @@ void ReferenceScene::occluded(ShadowPacket& packet) const
         rays.dir_y[i] = direction.y;
         rays.dir_z[i] = direction.z;
         rays.tnear[i] = 0.0f;
-        rays.tfar[i] = kInfinity;
+        rays.tfar[i] = packet.distances[i < packet.count ? i : 0];
         rays.time[i] = 0.0f;
         rays.mask[i] = ~0u;
         rays.flags[i] = 0;
@@ -191,7 +191,8 @@ ReferenceHit ReferenceScene::closest(vec3 origin, vec3 direction) const
     normal = dot(normal, normal) > 0.0f ? normalize(normal) : face;
     if (dot(face, normal) < 0.0f)
         face = -face;
-    return {true, origin + query.ray.tfar * direction, normal, face, instance};
+    return {true,     origin + query.ray.tfar * direction, normal,    face,
+            instance, query.hit.primID,                    vec2(u, v)};
 }
 
 const std::vector<MeshMaterial>& ReferenceScene::materials() const

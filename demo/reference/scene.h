@@ -25,6 +25,7 @@ struct ShadowPacket {
     vec3 origin{0}; // world
     int count = 0;
     std::array<vec3, kSize> directions{};
+    std::array<float, kSize> distances{}; // how far to look, in lengths of the direction; may be infinite
     std::array<bool, kSize> visible{};
 };
 
@@ -34,6 +35,8 @@ struct ReferenceHit {
     vec3 normal{0};     // world, unit, interpolated between the vertices
     vec3 faceNormal{0}; // world, unit, on the side of `normal`
     std::uint32_t instance = kNoInstance;
+    std::uint32_t triangle = 0;
+    vec2 barycentric{0}; // weights of the triangle's second and third corner
 };
 
 class ReferenceScene {
