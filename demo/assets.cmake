@@ -13,7 +13,7 @@ function(penumbra_demo_mesh NAME SOURCE)
     set(assets ${assets} ${output} PARENT_SCOPE)
 endfunction()
 
-foreach(shape chess_pawn gear mug rounded_cube teapot torus_knot floor)
+foreach(shape ball chess_pawn gear mug panel rounded_cube teapot torus_knot floor)
     set(source ${shape_dir}/${shape}.obj)
     add_custom_command(OUTPUT ${source}
         COMMAND penumbra-content ${shape} -o ${source} DEPENDS penumbra-content COMMENT "Shape ${shape}" VERBATIM)
@@ -22,6 +22,19 @@ foreach(shape chess_pawn gear mug rounded_cube teapot torus_knot floor)
     else()
         penumbra_demo_mesh(${shape} ${source})
     endif()
+endforeach()
+
+# Lights: descriptions beside the picture that one of them shows.
+set(light_dir ${CMAKE_CURRENT_BINARY_DIR}/lights)
+set(picture ${light_dir}/picture.png)
+add_custom_command(OUTPUT ${picture}
+    COMMAND penumbra-content picture -o ${picture} DEPENDS penumbra-content COMMENT "Picture picture.png" VERBATIM)
+foreach(light ball_lamp picture_lamp)
+    configure_file(${CMAKE_CURRENT_SOURCE_DIR}/content/lights/${light}.json ${light_dir}/${light}.json COPYONLY)
+    set(output ${PENUMBRA_ASSET_DIR}/${light}.glb)
+    add_custom_command(OUTPUT ${output} COMMAND assetc light ${light_dir}/${light}.json -o ${output}
+        DEPENDS assetc ${light_dir}/${light}.json ${picture} COMMENT "Asset ${light}.glb" VERBATIM)
+    list(APPEND assets ${output})
 endforeach()
 
 # penumbra_package_file(VARIABLE PACKAGE FILE): a file that a Debian package installs; without it there is no demo content.

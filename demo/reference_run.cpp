@@ -20,7 +20,45 @@ mat4 worldFromObject(const GpuInstance& g)
         mat4(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec4(0, 0, 0, 1)));
 }
 
-// Every vertex of a visible cluster, and where its radiance lies in the frame's buffer.
+// The scene as rays see it: its instances, then the surfaces of lights that have none.
+struct TracedScene {
+    ReferenceScene scene;
+    std::vector<AreaLight> lights;
+};
+
+Result<TracedScene> traceable(const SceneData& data, const CpuInstances& rows,
+                              std::span<const MeshAsset* const> meshes)
+{
+    std::vector<ReferenceInstance> instances;
+    std::vector<MeshMaterial> materials;
+    for (std::uint32_t i = 0; i < data.instances.size(); ++i) {
+        instances.push_back(
+            {meshes[data.instances[i].mesh], worldFromObject(rows.instances[i]), i});
+        materials.push_back(data.instances[i].material);
+    }
+    std::vector<AreaLight> lights;
+    for (std::size_t l = 0; l < data.lights.size(); ++l) {
+        const SceneLight& light = data.lights[l];
+        std::uint32_t surface = light.owner.value_or(static_cast<std::uint32_t>(instances.size()));
+        if (surface == instances.size()) {
+            instances.push_back({meshes[light.asset],
+                                 worldFromObject(rows.instances[data.instances.size() + l]),
+                                 surface});
+            materials.emplace_back();
+        }
+        Result<AreaLight> area = AreaLight::make(surface, instances[surface], light.intensity);
+        if (!area)
+            return area.error();
+        lights.push_back(std::move(*area));
+    }
+    Result<ReferenceScene> scene = ReferenceScene::build(instances, materials);
+    if (!scene)
+        return scene.error();
+    return TracedScene{std::move(*scene), std::move(lights)};
+}
+
+// Every vertex of a visible cluster, but of surfaces that shine, and where its radiance lies in the
+// frame's buffer.
 struct Receivers {
     std::vector<ReferenceReceiver> receivers;
     std::vector<std::uint32_t> radianceIndex;
@@ -32,6 +70,8 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& instances,
     Receivers out;
     for (const ClusterEntities& visible : cullAndSort(data, instances, constants)) {
         const SceneCluster& cluster = data.clusters[visible.cluster];
+        if (data.instances[cluster.instance].emission != vec3(0))
+            continue;
         const MeshRange& mesh = data.meshes[data.instances[cluster.instance].mesh];
         const GpuInstance& g = instances.instances[cluster.instance];
         for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
@@ -64,6 +104,149 @@ Image8 displayImage(std::span<const vec3> radiance, VkExtent2D extent, float exp
     return image;
 }
 
+std::vector<vec3> atReceivers(std::span<const vec4> radiance, const Receivers& receivers)
+{
+    std::vector<vec3> values;
+    for (const std::uint32_t index : receivers.radianceIndex)
+        values.push_back(vec3(radiance[index]));
+    return values;
+}
+
+// Draws the frame with the radiance that the options ask for, and returns that.
+Result<std::vector<vec4>> drawFields(Renderer& renderer, const View& view,
+                                     const ReferenceRunOptions& options)
+{
+    if (options.cpuScalar) {
+        const CpuFrame cpu = combineOnCpu(Kernel::Literal, renderer.scene().data(),
+                                          renderer.constants(view));
+        if (Result<void> set = renderer.setRadiance(cpu.radiance); !set)
+            return set.error();
+    }
+    if (Result<void> drawn = renderer.drawFrame(view, options.kernel, !options.cpuScalar); !drawn)
+        return drawn.error();
+    return renderer.radiance();
+}
+
+// The same under the environment alone.
+Result<std::vector<vec4>> drawWithoutLights(Renderer& renderer, const View& view,
+                                            const ReferenceRunOptions& options)
+{
+    const std::vector<SceneLight> lights = renderer.scene().data().lights;
+    for (std::uint32_t l = 0; l < lights.size(); ++l) {
+        SceneLight off = lights[l];
+        off.intensity = vec3(0);
+        renderer.scene().setLight(l, off);
+    }
+    Result<std::vector<vec4>> radiance = drawFields(renderer, view, options);
+    for (std::uint32_t l = 0; l < lights.size(); ++l)
+        renderer.scene().setLight(l, lights[l]);
+    return radiance;
+}
+
+std::vector<vec3> sum(std::span<const vec3> a, std::span<const vec3> b, float factor = 1)
+{
+    std::vector<vec3> result(a.begin(), a.end());
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] += factor * b[i];
+    return result;
+}
+
+nlohmann::ordered_json relative(const RadianceErrors& errors)
+{
+    return {{"meanUnshadowed", errors.meanUnshadowed},
+            {"rmseRelative", errors.rmseRelative},
+            {"biasRelative", errors.meanUnshadowed > 0 ? errors.bias / errors.meanUnshadowed : 0}};
+}
+
+// What the receivers show against what they should.
+struct Figures {
+    RadianceErrors errors;
+    double lightBandLimit = 0, fieldsAndProducts = 0; // rmse of the cause over the mean unshadowed
+    nlohmann::ordered_json byLight;                   // null without local lights
+    std::vector<float> perReceiver;
+    double seconds = 0;
+};
+
+// `test` under all lights, `testSky` under the environment alone; equal where there is no other.
+Figures measure(const TracedScene& traced, const DemoScene& scene, const Receivers& receivers,
+                std::span<const vec3> test, std::span<const vec3> testSky, std::uint32_t samples)
+{
+    const Environment lit = scene.ground ? aboveGround(scene.environment) : scene.environment;
+    const auto trace = [&](const ReferenceLight& sky, std::span<const AreaLight> lights) {
+        return shadeReference(traced.scene, {sky, lights}, receivers.receivers,
+                              {.samples = samples});
+    };
+    const ReferenceRadiance sky =
+        trace(ReferenceLight::fromMap(lit, mat3(1), scene.intensity), {});
+    const ReferenceRadiance sky4 =
+        trace(ReferenceLight::fromSh4(lit.sh4, mat3(1), scene.intensity), {});
+    const ReferenceRadiance local =
+        trace(ReferenceLight::fromMap(lit, mat3(1), 0), traced.lights);
+
+    Figures figures;
+    const std::vector<vec3> shadowed = sum(sky.shadowed, local.shadowed);
+    figures.errors = compareRadiance(test, shadowed, sum(sky.unshadowed, local.unshadowed));
+    const double mean = figures.errors.meanUnshadowed;
+    figures.lightBandLimit =
+        compareRadiance(sky4.shadowed, sky.shadowed, sky.unshadowed).rmse / mean;
+    figures.fieldsAndProducts =
+        compareRadiance(testSky, sky4.shadowed, sky4.unshadowed).rmse / mean;
+    if (!traced.lights.empty()) {
+        figures.byLight["environment"] =
+            relative(compareRadiance(testSky, sky.shadowed, sky.unshadowed));
+        figures.byLight["local"] = relative(
+            compareRadiance(sum(test, testSky, -1), local.shadowed, local.unshadowed));
+    }
+    figures.perReceiver = errorPerReceiver(test, shadowed);
+    figures.seconds = sky.seconds + local.seconds;
+    return figures;
+}
+
+// What the camera sees, traced per pixel, which no vertex interpolation touches; over the
+// background of `fields`, which shows the whole map.
+struct TracedPicture {
+    Image8 image;
+    double seconds = 0;
+};
+
+TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, const View& view,
+                           const Image8& fields, std::uint32_t samples)
+{
+    mat4 flipY(1);
+    flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
+    const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, fields.width,
+                                 fields.height};
+    const ReferenceLight sky = ReferenceLight::fromMap(
+        scene.ground ? aboveGround(scene.environment) : scene.environment, mat3(1),
+        scene.intensity);
+    // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
+    const ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
+                                                     {.samples = std::max(samples / 4, 64u)});
+    const Image8 shaded = displayImage(picture.radiance.shadowed, {fields.width, fields.height},
+                                       scene.exposure);
+    TracedPicture out{fields, picture.radiance.seconds};
+    for (std::size_t i = 0; i < picture.instance.size(); ++i)
+        if (picture.instance[i] != kNoInstance)
+            std::copy_n(shaded.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4,
+                        out.image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
+    return out;
+}
+
+// The error of each receiver as brightness; white: a quarter of the mean unshadowed radiance.
+Result<Image8> drawErrors(Renderer& renderer, const View& view, const Receivers& receivers,
+                          const Figures& figures, float exposure)
+{
+    std::vector<vec4> radiance(renderer.scene().data().radianceCount, vec4(0, 0, 0, 1));
+    const float scale = 4 / (static_cast<float>(figures.errors.meanUnshadowed) * exposure);
+    for (std::size_t i = 0; i < figures.perReceiver.size(); ++i)
+        radiance[receivers.radianceIndex[i]] = vec4(vec3(figures.perReceiver[i] * scale), 1);
+    if (Result<void> set = renderer.setRadiance(radiance); !set)
+        return set.error();
+    if (Result<void> drawn = renderer.drawFrame(view, Kernel::Exact, false); !drawn)
+        return drawn.error();
+    return renderer.capture();
+}
+
 } // namespace
 
 Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View& view,
@@ -71,83 +254,39 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
 {
     using Clock = std::chrono::steady_clock;
     const SceneData& data = renderer.scene().data();
-    const auto fieldStart = Clock::now();
-    if (options.cpuScalar) {
-        const CpuFrame cpu = combineOnCpu(Kernel::Literal, data, renderer.constants(view));
-        if (Result<void> set = renderer.setRadiance(cpu.radiance); !set)
-            return set;
-    }
-    if (Result<void> drawn = renderer.drawFrame(view, options.kernel, !options.cpuScalar); !drawn)
-        return drawn;
-    const double fieldSeconds = std::chrono::duration<double>(Clock::now() - fieldStart).count();
-    Result<Image8> fields = renderer.capture();
-    Result<std::vector<vec4>> radiance = renderer.radiance();
-    if (!fields || !radiance)
-        return fields ? radiance.error() : fields.error();
-
-    // The same instances, light and receivers as the frame just drawn.
-    const CpuInstances instances = updateInstances(data);
-    const std::vector<const MeshAsset*> meshes = scene.assets.meshes();
-    std::vector<ReferenceInstance> referenceInstances;
-    std::vector<MeshMaterial> materials;
-    for (std::uint32_t i = 0; i < data.instances.size(); ++i) {
-        referenceInstances.push_back(
-            {meshes[data.instances[i].mesh], worldFromObject(instances.instances[i]), i});
-        materials.push_back(data.instances[i].material);
-    }
-    Result<ReferenceScene> traced = ReferenceScene::build(referenceInstances, materials);
+    const CpuInstances rows = updateInstances(data);
+    const Receivers receivers = visibleReceivers(data, rows, renderer.constants(view));
+    const Result<TracedScene> traced = traceable(data, rows, scene.assets.meshes());
     if (!traced)
         return traced.error();
-    const Environment lit = scene.ground ? aboveGround(scene.environment) : scene.environment;
-    const ReferenceLight sky = ReferenceLight::fromMap(lit, mat3(1), scene.intensity);
-    const ReferenceLight sky4 = ReferenceLight::fromSh4(lit.sh4, mat3(1), scene.intensity);
-    const Receivers receivers = visibleReceivers(data, instances, renderer.constants(view));
-    const ReferenceOptions sampling{.samples = options.samples};
-    const ReferenceRadiance truth = shadeReference(*traced, sky, receivers.receivers, sampling);
-    const ReferenceRadiance truth4 = shadeReference(*traced, sky4, receivers.receivers, sampling);
 
-    std::vector<vec3> test;
-    for (const std::uint32_t index : receivers.radianceIndex)
-        test.push_back(vec3((*radiance)[index]));
-    const RadianceErrors errors = compareRadiance(test, truth.shadowed, truth.unshadowed);
-    const RadianceErrors lightError =
-        compareRadiance(truth4.shadowed, truth.shadowed, truth.unshadowed);
-    const RadianceErrors fieldError = compareRadiance(test, truth4.shadowed, truth4.unshadowed);
+    // Light adds up: the frame without local lights says what the environment gives.
+    const Result<std::vector<vec4>> skyOnly = data.lights.empty()
+                                                  ? Result<std::vector<vec4>>(std::vector<vec4>())
+                                                  : drawWithoutLights(renderer, view, options);
+    if (!skyOnly)
+        return skyOnly.error();
+    const auto start = Clock::now();
+    const Result<std::vector<vec4>> radiance = drawFields(renderer, view, options);
+    const double fieldSeconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (!radiance)
+        return radiance.error();
+    const Result<Image8> fields = renderer.capture();
+    if (!fields)
+        return fields.error();
 
-    // Pictures: per pixel, which no vertex interpolation touches. The background shows the whole
-    // map.
-    const VkExtent2D extent = renderer.extent();
-    mat4 flipY(1);
-    flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
-    const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, extent.width,
-                                 extent.height};
-    // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
-    const ReferencePicture picture =
-        renderReference(*traced, sky, camera, {.samples = std::max(options.samples / 4, 64u)});
-    const Image8 shaded = displayImage(picture.radiance.shadowed, extent, scene.exposure);
-    Image8 reference = *fields;
-    for (std::size_t i = 0; i < picture.instance.size(); ++i)
-        if (picture.instance[i] != kNoInstance)
-            std::copy_n(shaded.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i), 4,
-                        reference.rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
-    const FlipResult flipped = flipMap(reference, *fields);
-
-    std::vector<vec4> errorRadiance(data.radianceCount, vec4(0, 0, 0, 1));
-    const std::vector<float> perReceiver = errorPerReceiver(test, truth.shadowed);
-    for (std::size_t i = 0; i < perReceiver.size();
-         ++i) // white: a quarter of the mean unshadowed radiance
-        errorRadiance[receivers.radianceIndex[i]] = vec4(
-            vec3(perReceiver[i] * 4 / static_cast<float>(errors.meanUnshadowed)) / scene.exposure,
-            1);
-    if (Result<void> set = renderer.setRadiance(errorRadiance); !set)
-        return set;
-    if (Result<void> drawn = renderer.drawFrame(view, options.kernel, false); !drawn)
-        return drawn;
-    Result<Image8> errorImage = renderer.capture();
+    const Figures figures = measure(
+        *traced, scene, receivers, atReceivers(*radiance, receivers),
+        atReceivers(data.lights.empty() ? *radiance : *skyOnly, receivers), options.samples);
+    const RadianceErrors& errors = figures.errors;
+    const TracedPicture picture = tracePicture(*traced, scene, view, *fields, options.samples);
+    const Result<Image8> errorImage =
+        drawErrors(renderer, view, receivers, figures, scene.exposure);
     if (!errorImage)
         return errorImage.error();
+    const FlipResult flipped = flipMap(picture.image, *fields);
 
-    const nlohmann::ordered_json json{
+    nlohmann::ordered_json json{
         {"scene", scene.name},
         {"kernel", options.cpuScalar ? "cpu-scalar" : kernelName(options.kernel)},
         {"receivers", receivers.receivers.size()},
@@ -159,18 +298,20 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         {"maxAbs", errors.maxAbs},
         {"flip", flipped.mean},
         {"byCause",
-         {{"lightBandLimit", lightError.rmse / errors.meanUnshadowed},
-          {"fieldsAndProducts", fieldError.rmse / errors.meanUnshadowed}}},
-        {"referenceSeconds", truth.seconds},
-        {"pictureSeconds", picture.radiance.seconds},
+         {{"lightBandLimit", figures.lightBandLimit},
+          {"fieldsAndProducts", figures.fieldsAndProducts}}},
+        {"referenceSeconds", figures.seconds},
+        {"pictureSeconds", picture.seconds},
         {"fieldSeconds", fieldSeconds}};
+    if (!figures.byLight.is_null())
+        json["byLight"] = figures.byLight;
     Result<void> done = writeFile(options.out / "reference.json", json.dump(2) + "\n");
     for (const auto& [name, image] :
          {std::pair{"fields.png", *fields},
-          {"reference.png", reference},
+          {"reference.png", picture.image},
           {"error.png", *errorImage},
-          {"flip.png", heatMap(extent.width, extent.height, flipped.map, 0.5f)},
-          {"side_by_side.png", sideBySide(std::array{*fields, reference})}})
+          {"flip.png", heatMap(fields->width, fields->height, flipped.map, 0.5f)},
+          {"side_by_side.png", sideBySide(std::array{*fields, picture.image})}})
         if (done)
             done = writePng(options.out / name, image);
     if (done)
@@ -178,8 +319,8 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
                    "{:.4f}, fields {:.4f}), "
                    "bias {:+.4f}, FLIP {:.4f}; {:.1f} s traced, {:.1f} ms with fields\n",
                    options.samples, receivers.receivers.size(), errors.rmseRelative,
-                   lightError.rmse / errors.meanUnshadowed, fieldError.rmse / errors.meanUnshadowed,
-                   errors.bias / errors.meanUnshadowed, flipped.mean, truth.seconds,
+                   figures.lightBandLimit, figures.fieldsAndProducts,
+                   errors.bias / errors.meanUnshadowed, flipped.mean, figures.seconds,
                    1000 * fieldSeconds);
     return done;
 }

@@ -1,6 +1,7 @@
 #include "demo/scene.h"
 
 #include "demo/scenes/falling.h"
+#include "demo/scenes/lights.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@ std::span<const SceneEntry> sceneEntries()
     static constexpr SceneEntry kScenes[] = {
         {"falling", "20 objects of 8 shapes fall on a floor, collide and come to rest",
          loadFallingScene},
+        {"lights", "two coloured spheres and a picture that shines move among objects",
+         loadLightsScene},
     };
     return kScenes;
 }

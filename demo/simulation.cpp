@@ -1,5 +1,6 @@
 #include "demo/simulation.h"
 
+#include "demo/orbit.h"
 #include "systems/physics_system.h"
 
 namespace penumbra {
@@ -12,6 +13,8 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
                 stepPhysics(context, *scene.physics, m_seconds);
             });
     }
+    m_schedule.add<const Orbit, Transform>(
+        "orbits", "simulate", [this](ecs::SystemContext& context) { moveOrbits(context, m_time); });
     m_schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
                    const RenderLight>(
         "gather", "extract",
@@ -21,6 +24,7 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
 const SceneChanges& Simulation::advance(float seconds)
 {
     m_seconds = seconds;
+    m_time += seconds;
     m_changes.clear();
     m_schedule.run();
     return m_changes;

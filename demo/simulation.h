@@ -21,7 +21,8 @@ public:
     }
 
 private:
-    float m_seconds = 0;
+    float m_seconds = 0; // of the step
+    double m_time = 0;   // since the start
     SceneChanges m_changes;
     ecs::Schedule m_schedule;
 };

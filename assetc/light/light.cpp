@@ -7,6 +7,7 @@
 #include "assetc/light/mesh_emitter.h"
 #include "assetc/light/shape_mesh.h"
 #include "assetc/light/sphere_emitter.h"
+#include "assetc/light/surface.h"
 
 #include <numbers>
 
@@ -31,7 +32,8 @@ Result<vec3> lambertianRadiance(const LightSpec& spec, double area)
     return radiance;
 }
 
-EmitterResult makeEmitter(const LightSpec& spec, const MeshAsset& mesh, std::uint32_t directions)
+EmitterResult makeEmitter(const LightSpec& spec, const LightPicture* picture, const MeshAsset& mesh,
+                          std::uint32_t directions)
 {
     if (spec.shape == EmitterShape::Sphere || spec.shape == EmitterShape::Mesh) {
         const bool sphere = spec.shape == EmitterShape::Sphere;
@@ -45,14 +47,7 @@ EmitterResult makeEmitter(const LightSpec& spec, const MeshAsset& mesh, std::uin
         return EmitterResult(std::make_unique<MeshEmitter>(
             mesh, *radiance, MeshEmitter::Options{spec.twoSided, directions}));
     }
-    std::optional<LightPicture> picture;
-    if (!spec.texture.empty()) {
-        auto read = readLightPicture(spec.texture);
-        if (!read)
-            return read.error();
-        picture = std::move(*read);
-    }
-    auto emitter = FlatEmitter::make(spec, picture ? &*picture : nullptr);
+    auto emitter = FlatEmitter::make(spec, picture);
     if (!emitter)
         return emitter.error();
     return EmitterResult(std::make_unique<FlatEmitter>(std::move(*emitter)));
@@ -146,6 +141,15 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
             "the falloff of {:.1f} degrees is narrower than a cell of the field, {:.1f} "
             "degrees; raise --max-side",
             spec.outerAngle - spec.innerAngle, cellAngle(options.side)));
+    std::optional<LightPicture> picture;
+    if (!spec.texture.empty()) {
+        auto read = readLightPicture(spec.texture);
+        if (!read)
+            return fail(read.error(), place);
+        picture = std::move(*read);
+    }
+    const LightPicture* const shown = picture ? &*picture : nullptr;
+    const float white = paintLight(mesh, spec, shown);
     if (const auto prepared = prepareMesh(light.asset, place, options.encode); !prepared)
         return prepared.error();
     {
@@ -153,10 +157,11 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
         mesh.selfVisibility = bakeSelfVisibility(spec, mesh, progress);
     }
 
-    const auto emitter = makeEmitter(spec, mesh, options.directions);
+    const auto emitter = makeEmitter(spec, shown, mesh, options.directions);
     if (!emitter)
         return fail(emitter.error(), place);
     light.power = (*emitter)->power();
+    setEmission(mesh, white * (*emitter)->surfaceRadiance());
     if (!(light.power.r + light.power.g + light.power.b > 0))
         return Error{place + ": the light is black; give it a texture with a bright pixel"};
     const auto fieldSettings = fieldOptions(spec, options, (*emitter)->bounds().radius);

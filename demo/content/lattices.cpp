@@ -53,6 +53,19 @@ ContentMesh makeRoundedCube()
 
 // The sides are one quad high and the bottom a fan around its middle: no receiver looks at them
 // closely.
+ContentMesh makePanel()
+{
+    // A floor of its own, stood up: its top looks along +z.
+    ContentMesh mesh = makeFloor(
+        {.width = 0.96f, .depth = 0.6f, .thickness = 0.02f, .cellsX = 16, .cellsZ = 10});
+    mesh.name = "panel";
+    for (vec3& p : mesh.positions)
+        p = vec3(p.x, -p.z, p.y - 0.001f);
+    for (vec3& n : mesh.normals)
+        n = vec3(n.x, -n.z, n.y);
+    return mesh;
+}
+
 ContentMesh makeFloor(const FloorShape& shape)
 {
     PENUMBRA_ASSERT(shape.width > 0 && shape.depth > 0 && shape.thickness > 0 && shape.cellsX > 0 &&

@@ -1,5 +1,7 @@
 // penumbra-content SHAPE -o FILE.obj [--list]: writes a shape of the demo as OBJ, for assetc.
+// penumbra-content picture -o FILE.png: writes the picture of its flat light.
 // Exit codes: 0 done, 1 the file cannot be written, 2 wrong usage.
+#include "demo/content/picture.h"
 #include "demo/content/shapes.h"
 
 #include <CLI/CLI.hpp>
@@ -13,7 +15,7 @@ int main(int argc, char** argv)
     std::string name, output;
     bool list = false;
     app.add_option("SHAPE", name, "name of a shape, see --list");
-    app.add_option("-o,--output", output, "the .obj file to write");
+    app.add_option("-o,--output", output, "the file to write");
     app.add_flag("--list", list, "list the shapes with their sizes and stop");
     try {
         app.parse(argc, argv);
@@ -27,17 +29,20 @@ int main(int argc, char** argv)
             fmt::print("{:<13} {:>6} vertices {:>6} triangles  {}\n", shape.name,
                        mesh.positions.size(), mesh.indices.size() / 3, shape.description);
         }
+        fmt::print("picture       the picture of the demo's flat light, as PNG\n");
         return 0;
     }
     const ContentShape* shape = findShape(name);
-    if (shape == nullptr || output.empty()) {
+    const bool picture = name == "picture";
+    if ((shape == nullptr && !picture) || output.empty()) {
         fmt::print(stderr, "penumbra-content: {}\n",
                    name.empty()       ? "no SHAPE given; --list shows the shapes"
-                   : shape == nullptr ? "no shape is called " + name + "; --list shows the shapes"
-                                      : "no file given; add -o FILE.obj");
+                   : shape == nullptr && !picture ? "no shape is called " + name + "; --list shows the shapes"
+                                      : "no file given; add -o FILE");
         return 2;
     }
-    const Result<void> written = writeObj(output, shape->make());
+    const Result<void> written =
+        picture ? writePng(output, makePicture()) : writeObj(output, shape->make());
     if (!written) {
         fmt::print(stderr, "penumbra-content: {}\n", written.error().message);
         return 1;

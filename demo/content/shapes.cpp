@@ -8,12 +8,14 @@ namespace penumbra {
 std::span<const ContentShape> contentShapes()
 {
     static constexpr std::array kShapes{
+        ContentShape{"ball", "a sphere", makeBall},
         ContentShape{"bowling_pin", "a ten-pin bowling pin, USBC profile", makeBowlingPin},
         ContentShape{"chess_pawn", "a Staunton pawn", makeChessPawn},
         ContentShape{"floor", "a plate of 96 x 96 cells, top at y = 0", [] { return makeFloor(); }},
         ContentShape{"gear", "a spur gear with bore, hub and rim", makeGear},
         ContentShape{"hex_nut", "a chamfered nut with a helical thread", makeHexNut},
         ContentShape{"mug", "a mug with handle and inside", makeMug},
+        ContentShape{"panel", "a thin box, the back of a flat light", makePanel},
         ContentShape{"rounded_cube", "a superellipsoid", makeRoundedCube},
         ContentShape{"spring", "a compression spring with closed ends", makeSpring},
         ContentShape{"teapot", "Newell's teapot", makeTeapot},

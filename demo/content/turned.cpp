@@ -25,6 +25,16 @@ ContentMesh makeChessPawn()
     return builder.finish("chess_pawn", 40);
 }
 
+ContentMesh makeBall()
+{
+    constexpr float kRadius = 0.1f;
+    Profile p({0, -kRadius}, 0.0082f);
+    p.arcTo({0, 0}, {kRadius, 0}).arcTo({0, 0}, {0, kRadius});
+    MeshBuilder builder;
+    builder.addSkin(latheRings(p.points(), 48), false);
+    return builder.finish("ball", 40);
+}
+
 ContentMesh makeBowlingPin()
 {
     // Diameter at height, inches: as the USBC specifies a ten-pin.

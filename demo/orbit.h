@@ -1,0 +1,29 @@
+// Entities that go round: the lights and floating objects of scene `lights`.
+#pragma once
+
+#include "runtime/ecs/system_context.h"
+#include "systems/components.h"
+
+#include <optional>
+
+namespace penumbra {
+
+// A circle about the vertical axis through `center`.  Written by: spawn.  Read by: moveOrbits.
+struct Orbit {
+    static constexpr std::string_view kName = "Orbit";
+    vec3 center{0};   // world, metres
+    float radius = 0; // metres
+    float speed = 0;  // rad/s, counter-clockwise from above
+    float phase = 0;  // rad at time 0
+    float bob = 0;    // metres up and down, once per turn
+    float spin = 0;   // rad/s about its own vertical axis
+    float aim = 0;    // 1: its +z looks at `center` instead
+};
+
+// Where the entity is `time` seconds from the start.
+Transform orbitAt(const Orbit& orbit, const Transform& now, double time);
+
+// System: reads Orbit, writes Transform.
+void moveOrbits(const ecs::SystemContext& context, double time);
+
+} // namespace penumbra

@@ -1,0 +1,133 @@
+#include "demo/scenes/lights.h"
+
+#include "demo/orbit.h"
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+
+namespace penumbra {
+
+namespace {
+
+struct Object {
+    const char* asset;
+    float size; // largest side of the bounding box, metres
+    vec2 place; // x, z on the floor, metres
+    float yaw;  // radians
+    vec3 albedo;
+    float glossFraction, glossExponent;
+};
+
+constexpr Object kObjects[] = {
+    {"teapot", 0.62f, {-0.62f, 0.18f}, 0.5f, {0.75f, 0.72f, 0.70f}, 0.4f, 4},
+    {"knight", 0.55f, {0.62f, -0.10f}, 2.4f, {0.72f, 0.70f, 0.66f}, 0, 0},
+    {"chess_pawn", 0.46f, {0.28f, 0.62f}, 0, {0.70f, 0.66f, 0.58f}, 0, 0},
+    {"chess_pawn", 0.46f, {0.95f, 0.52f}, 0, {0.62f, 0.60f, 0.58f}, 0, 0},
+    {"mug", 0.34f, {-0.22f, 0.86f}, 3.9f, {0.68f, 0.68f, 0.70f}, 0, 0},
+    {"rounded_cube", 0.32f, {-1.05f, 0.74f}, 0.7f, {0.70f, 0.64f, 0.56f}, 0, 0},
+    {"gear", 0.50f, {0.05f, -0.62f}, 0.2f, {0.66f, 0.68f, 0.72f}, 0.4f, 4},
+    {"bunny", 0.60f, {-0.75f, -0.70f}, 0.4f, {0.72f, 0.70f, 0.68f}, 0, 0},
+};
+
+Result<AssetHandle> load(DemoScene& scene, const SceneOptions& options, const std::string& name)
+{
+    return scene.assets.loadMesh(options.assets / (name + ".glb"));
+}
+
+float scaleTo(const MeshAsset& mesh, float size)
+{
+    const vec3 extent = mesh.boundsMax - mesh.boundsMin;
+    return size / std::max({extent.x, extent.y, extent.z});
+}
+
+Result<void> placeObjects(DemoScene& scene, const SceneOptions& options)
+{
+    for (const Object& object : kObjects) {
+        Result<AssetHandle> asset = load(scene, options, object.asset);
+        if (!asset)
+            return asset.error();
+        const MeshAsset& mesh = scene.assets.mesh(*asset);
+        const float scale = scaleTo(mesh, object.size);
+        const vec3 position(object.place.x, -scale * mesh.boundsMin.y, object.place.y);
+        const vec4 rotation(0, std::sin(object.yaw / 2), 0, std::cos(object.yaw / 2));
+        scene.world.create(Transform{position, scale, rotation}, MeshInstance{*asset},
+                           ShadowFieldOccluder{*asset},
+                           Material{object.albedo, object.glossFraction, object.glossExponent});
+    }
+    Result<AssetHandle> knot = load(scene, options, "torus_knot"); // floats and turns
+    if (!knot)
+        return knot.error();
+    scene.world.create(Transform{.scale = scaleTo(scene.assets.mesh(*knot), 0.48f)},
+                       MeshInstance{*knot}, ShadowFieldOccluder{*knot},
+                       Material{vec3(0.70f, 0.66f, 0.62f), 0, 0},
+                       Orbit{.center = vec3(0.05f, 0.52f, 0.12f), .spin = 0.8f});
+    return {};
+}
+
+// The surface blocks the light of others as the solid does that it covers.
+Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::string& light,
+                      const std::string& solid, vec3 intensity, const Orbit& orbit)
+{
+    Result<AssetHandle> source = load(scene, options, light);
+    Result<AssetHandle> body = load(scene, options, solid);
+    if (!source || !body)
+        return source ? body.error() : source.error();
+    const Material matte{vec3(0.5f), 0, 0};
+    scene.world.create(orbitAt(orbit, Transform{}, 0), MeshInstance{*source},
+                       ShadowFieldEmitter{*source, intensity}, ShadowFieldOccluder{*body}, matte,
+                       orbit);
+    if (solid == "panel") // what is behind the picture
+        scene.world.create(orbitAt(orbit, Transform{}, 0), MeshInstance{*body}, matte, orbit);
+    return {};
+}
+
+} // namespace
+
+Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
+{
+    auto scene = std::make_unique<DemoScene>();
+    scene->name = "lights";
+    scene->ground = true;
+    scene->intensity = 0.12f;
+    scene->exposure = 1.0f;
+    scene->camera = {.target = vec3(0, 0.28f, 0),
+                     .distance = 4.4f,
+                     .yaw = 0.45f,
+                     .pitch = 0.55f,
+                     .fieldOfView = 0.62f};
+    Result<Environment> environment = loadEnvironment(
+        options.assets, options.environment.empty() ? "courtyard" : options.environment);
+    if (!environment)
+        return environment.error();
+    scene->environment = std::move(*environment);
+    Result<AssetHandle> floor = load(*scene, options, "floor");
+    if (!floor)
+        return floor.error();
+    scene->world.create(Transform{}, MeshInstance{*floor},
+                        Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
+
+    constexpr float kHalfTurn = glm::pi<float>();
+    Result<void> done = placeObjects(*scene, options);
+    if (done)
+        done = addLight(*scene, options, "ball_lamp", "ball", vec3(30, 13, 5),
+                        {.center = vec3(0, 0.62f, 0), .radius = 1.15f, .speed = 0.7f, .bob = 0.2f});
+    if (done)
+        done = addLight(*scene, options, "ball_lamp", "ball", vec3(5, 12, 30),
+                        {.center = vec3(0, 0.80f, 0),
+                         .radius = 0.55f,
+                         .speed = -0.9f,
+                         .phase = kHalfTurn,
+                         .bob = 0.15f});
+    if (done)
+        done = addLight(*scene, options, "picture_lamp", "panel", vec3(6),
+                        {.center = vec3(0, 0.75f, 0),
+                         .radius = 1.7f,
+                         .speed = 0.12f,
+                         .phase = 0.75f * kHalfTurn,
+                         .aim = 1});
+    if (!done)
+        return done.error();
+    return scene;
+}
+
+} // namespace penumbra
