@@ -70,7 +70,8 @@ Grid halved(const Grid& grid, std::uint32_t side, bool mean)
 
 class Adapter {
 public:
-    Adapter(const FieldSamples& field, const AdaptLimit& limit) : m_field(field)
+    Adapter(const FieldSamples& field, const AdaptLimit& limit)
+        : m_field(field), m_threshold(limit.threshold)
     {
         const ShadowField& head = field.head;
         m_shells = head.shellSides.size();
@@ -148,7 +149,7 @@ public:
                     out.nodes.insert(out.nodes.end(), shell.grids[f].begin(), shell.grids[f].end());
         for (std::size_t s = 0; s < m_shells; ++s) {
             out.head.shellSides[s] = static_cast<std::uint16_t>(m_adapted[s].side);
-            report.worst = std::max(report.worst, m_adapted[s].worst);
+            report.worst = std::max(report.worst, m_threshold * (m_adapted[s].worst / m_limit[s]));
             report.shellsDropped += m_adapted[s].side == 0 ? 1 : 0;
         }
         report.bytes = fieldTexelBytes(out.head);
@@ -252,7 +253,8 @@ private:
 
     const FieldSamples& m_field;
     std::size_t m_shells = 0, m_fields = 0;
-    std::vector<float> m_limit; // [shell]
+    float m_threshold = 0;
+    std::vector<float> m_limit; // [shell] the threshold in the unit of the samples
     std::vector<Shell> m_adapted;
 };
 

@@ -21,7 +21,7 @@ struct AdaptReport {
     std::uint64_t bytesFixed = 0; // of the texels, if all shells had the largest side
     std::uint64_t bytes = 0;
     std::uint32_t shellsDropped = 0;
-    float worst = 0; // largest Eq. (1) error of a replaced node
+    float worst = 0; // largest Eq. (1) error of a replaced node, in the unit of the threshold
 };
 
 // Halves the grid of every shell, 65 to 33, 17, 9 nodes, while the error at every node of the first

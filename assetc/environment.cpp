@@ -1,11 +1,10 @@
 #include "assetc/environment.h"
 
 #include "assetc/file_type.h"
-#include "runtime/file.h"
+#include "assetc/words.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -133,22 +132,11 @@ std::vector<vec3> boxFilter(const EnvironmentSource& source, const Filter& filte
 
 Result<EnvironmentSource> readEnvironmentSource(const std::filesystem::path& path)
 {
-    const Result<std::vector<std::byte>> bytes = readFile(path, kMaxPictureBytes);
+    const auto bytes = readInput(path, FileType::EnvironmentSource, kMaxPictureBytes);
     if (!bytes)
         return bytes.error();
-    const auto startsWith = [&](std::string_view magic) {
-        return bytes->size() >= magic.size() &&
-               std::memcmp(bytes->data(), magic.data(), magic.size()) == 0;
-    };
-    Result<EnvironmentSource> source =
-        Error{"neither Radiance .hdr nor OpenEXR; convert it to one of them"};
-    if (startsWith("\x76\x2f\x31\x01"))
-        source = decodeOpenExr(*bytes);
-    else if (startsWith("#?"))
-        source = decodeRadianceHdr(*bytes);
-    else if (const RecognisedFile file = recogniseFile(*bytes);
-             file.bySignature || file.type != FileType::Other)
-        source = Error{fileTypeText(file)};
+    const bool radiance = bytes->front() == std::byte{'#'};
+    auto source = radiance ? decodeRadianceHdr(*bytes) : decodeOpenExr(*bytes);
     if (!source)
         return fail(source.error(), path.string());
     const std::int64_t skew = std::int64_t{source->width} - 2 * std::int64_t{source->height};
@@ -185,6 +173,17 @@ Result<Environment> importEnvironment(const std::filesystem::path& path)
     if (!source)
         return source.error();
     return environmentFromSource(std::move(*source));
+}
+
+std::string mendedText(const EnvironmentStatistics& statistics)
+{
+    std::string text;
+    if (statistics.negative > 0)
+        text = counted(statistics.negative, "pixel") + " with a negative channel";
+    if (statistics.absurd > 0)
+        text += (text.empty() ? "" : " and ") + counted(statistics.absurd, "absurd pixel");
+    const bool one = statistics.negative + statistics.absurd == 1;
+    return text.empty() ? text : text + (one ? " was clamped" : " were clamped");
 }
 
 std::string environmentReport(const Environment& environment)

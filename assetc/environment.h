@@ -51,6 +51,9 @@ Environment environmentFromSource(EnvironmentSource source);
 
 Result<Environment> importEnvironment(const std::filesystem::path& path);
 
+// "3 pixels with a negative channel and 1 absurd pixel were clamped"; empty where none was.
+std::string mendedText(const EnvironmentStatistics& statistics);
+
 // JSON: {"map":[w,h],"source":[w,h],"negative","absurd","clampedAt","meanLuminance","maxLuminance",
 // "energyShare":{"order4","order6"}, "sh4":[[r,g,b] x 16]}. Ends in a line feed.
 std::string environmentReport(const Environment& environment);

@@ -76,10 +76,11 @@ UniformField readSamples(const FieldSamples& samples, std::size_t grid)
     return out;
 }
 
-float squared(const Sh4& a)
+// double: the square of a faint light's radiance is no float.
+double squared(const Sh4& a)
 {
-    float sum = 0;
-    for (const float c : a.c)
+    double sum = 0;
+    for (const double c : a.c)
         sum += c * c;
     return sum;
 }
@@ -95,9 +96,9 @@ Sh4 difference(const Sh4& a, const Sh4& b)
 // Root mean square and maximum of what is added, as squares over the whole sphere.
 class Collector {
 public:
-    void add(float square)
+    void add(double square)
     {
-        const double mean = std::max(0.0, static_cast<double>(square)) / (4 * glm::pi<double>());
+        const double mean = std::max(0.0, square) / (4 * glm::pi<double>());
         m_sum += mean;
         m_largest = std::max(m_largest, mean);
         ++m_count;
@@ -121,8 +122,8 @@ public:
     {}
 
     struct Squares {
-        float total, angular, radial, quantisation, directions;
-        float decay, lowDecay; // g(r) at the probe and on the shell below it
+        double total, angular, radial, quantisation, directions;
+        double decay, lowDecay; // g(r) at the probe and on the shell below it
     };
     // `fade`: the exact field does not end, so what readers fade out counts in `total`.
     [[nodiscard]] Squares at(const Probe& probe, bool fade) const
@@ -201,12 +202,13 @@ FieldErrors measureRadianceErrors(const FieldSamples& samples, const ShadowField
     for (std::size_t c = 0; c < channels; ++c)
         grids.emplace_back(samples, field, c);
     Causes causes;
-    const float part = 1 / (radiance * radiance * static_cast<float>(channels));
+    const double unit = radiance;
+    const double part = 1 / (unit * unit * static_cast<double>(channels));
     for (std::size_t i = 0; i < probes.size(); i += channels) {
         Channel::Squares sum{};
         for (std::size_t c = 0; c < channels; ++c) {
             const Channel::Squares squares = grids[c].at(probes[i + c], false);
-            const float here = part / (squares.decay * squares.decay);
+            const double here = part / (squares.decay * squares.decay);
             sum.total += squares.total * here;
             sum.quantisation += squares.quantisation * here;
             sum.angular += squares.angular * (part / (squares.lowDecay * squares.lowDecay));

@@ -3,6 +3,7 @@
 #include "assets/glb.h"
 #include "assets/json_reader.h"
 #include "assets/mesh_format.h"
+#include "runtime/file.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,8 @@ constexpr std::size_t kMaxJsonBytes = 256u << 20; // a .gltf may hold its buffer
 
 constexpr const char* kBake = "compile it with assetc bake";
 constexpr const char* kCompileMap = "compile it with assetc environment";
+constexpr const char* kCompiled =
+    "it is ready to be used as it is; to compile it anew, compile its source";
 constexpr const char* kExport = "export it as glTF (.glb), which assetc bake reads";
 constexpr const char* kNotAMap =
     "assetc reads no such picture; light and sky come as OpenEXR or Radiance .hdr";
@@ -28,7 +31,8 @@ struct Signature {
 
 // Files that begin with a fixed text.
 constexpr std::array kSignatures = {
-    Signature{"PENV", FileType::Environment, "a compiled environment", ""},
+    Signature{"glTF", FileType::MeshSource, "a binary glTF file", kBake},
+    Signature{"PENV", FileType::Environment, "a compiled environment", kCompiled},
     Signature{"\x76\x2f\x31\x01", FileType::EnvironmentSource, "an OpenEXR picture", kCompileMap},
     Signature{"#?", FileType::EnvironmentSource, "a Radiance .hdr picture", kCompileMap},
     Signature{"\x89PNG", FileType::Other, "a PNG picture", kNotAMap},
@@ -44,24 +48,21 @@ constexpr std::array kSignatures = {
     Signature{"\x1f\x8b", FileType::Other, "a gzip archive", "unpack it"},
 };
 
-bool hasFieldExtension(const nlohmann::json& document)
-{
-    const auto meshes = document.find("meshes");
-    if (meshes == document.end() || !meshes->is_array() || meshes->empty())
-        return false;
-    const nlohmann::json& mesh = meshes->front();
-    return mesh.is_object() && mesh.contains("extensions") && mesh["extensions"].is_object() &&
-           mesh["extensions"].contains(kFieldExtension);
-}
-
 RecognisedFile recogniseGlb(std::span<const std::byte> bytes)
 {
     const auto glb = readGlb(bytes);
     const auto document =
         glb ? parseJson(glb->json, kMaxJsonBytes) : Result<nlohmann::json>(glb.error());
-    if (document && !hasFieldExtension(*document))
+    if (!document)
+        return {FileType::Other, "an unreadable binary glTF file: " + document.error().message,
+                "copy it again, export it as glTF 2.0 or compile it again"};
+    const nlohmann::json::json_pointer extension(std::string("/meshes/0/extensions/") +
+                                                 kFieldExtension);
+    if (!document->contains(extension))
         return {FileType::MeshSource, "a binary glTF file", kBake};
-    return {FileType::MeshAsset, document ? "a compiled mesh" : "a damaged binary glTF file", ""};
+    const nlohmann::json& field = (*document)[extension];
+    const bool light = field.is_object() && field.contains("kind") && field["kind"] == "radiance";
+    return {FileType::MeshAsset, light ? "a compiled light" : "a compiled mesh", kCompiled};
 }
 
 bool hasAll(const nlohmann::json& object, std::initializer_list<const char*> keys)
@@ -70,19 +71,21 @@ bool hasAll(const nlohmann::json& object, std::initializer_list<const char*> key
                        [&](const char* key) { return object.contains(key); });
 }
 
-// The reports of all commands. Some have members of what they are about.
+// The reports of all commands. Some have members of what they are about, but none a version.
 RecognisedFile recogniseReport(const nlohmann::json& document)
 {
+    if (document.contains("version"))
+        return {};
     constexpr const char* kRead = "it is there to be read; nothing is made of it";
     const char* what =
-        hasAll(document, {"manifest", "totals"})          ? "a report of assetc build"
-        : hasAll(document, {"source", "assets"})          ? "a report of assetc bake"
-        : hasAll(document, {"bytes", "light", "seconds"}) ? "a report of assetc light"
-        : hasAll(document, {"bytes", "seconds"})          ? "a report of assetc bake"
-        : hasAll(document, {"map", "energyShare"})        ? "a report of assetc environment"
-        : hasAll(document, {"file", "valid", "problems"}) ? "a report of assetc validate"
-        : hasAll(document, {"type", "bytes"})             ? "a report of assetc inspect"
-                                                          : nullptr;
+        hasAll(document, {"manifest", "totals"})             ? "a report of assetc build"
+        : hasAll(document, {"source", "assets", "warnings"}) ? "a report of assetc bake"
+        : hasAll(document, {"bytes", "light", "seconds"})    ? "a report of assetc light"
+        : hasAll(document, {"bytes", "seconds"})             ? "a report of assetc bake"
+        : hasAll(document, {"map", "energyShare"})           ? "a report of assetc environment"
+        : hasAll(document, {"file", "valid", "problems"})    ? "a report of assetc validate"
+        : hasAll(document, {"type", "bytes"})                ? "a report of assetc inspect"
+                                                             : nullptr;
     return what ? RecognisedFile{FileType::Report, what, kRead} : RecognisedFile{};
 }
 
@@ -90,19 +93,19 @@ RecognisedFile recogniseJson(std::string_view text)
 {
     const auto document = parseJson(text, kMaxJsonBytes);
     if (!document)
-        return {FileType::Other, document.error().message, "mend it there"};
+        return {FileType::Other, document.error().message, "mend it"};
     if (document->contains("asset"))
         return {FileType::MeshSource, "a glTF file", kBake};
     if (RecognisedFile report = recogniseReport(*document); report.type == FileType::Report)
         return report;
     if (document->contains("entities"))
-        return {FileType::Scene, "a scene of parts", ""};
+        return {FileType::Scene, "a scene of parts", kCompiled};
     if (document->contains("assets"))
         return {FileType::Manifest, "a manifest", "build it with assetc build"};
     for (const char* key : {"type", "radiance", "power", "intensity"})
         if (document->contains(key))
             return {FileType::LightSpec, "a light description", "compile it with assetc light"};
-    return {FileType::Other, "JSON of another program",
+    return {FileType::OtherJson, "JSON of another program",
             "assetc reads glTF (\"asset\"), manifests (\"assets\"), light descriptions "
             "(\"type\") and scenes (\"entities\")"};
 }
@@ -129,38 +132,84 @@ bool looksLikeObj(std::string_view text)
     return known > 0;
 }
 
-} // namespace
-
-RecognisedFile recogniseFile(std::span<const std::byte> bytes)
+bool endsInObj(const std::filesystem::path& name)
 {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (text.empty())
-        return {FileType::Other, "an empty file", "write it again"};
-    if (text.starts_with("glTF"))
-        return recogniseGlb(bytes);
-    for (const Signature& signature : kSignatures)
-        if (text.starts_with(signature.begin))
-            return {signature.type, signature.what, signature.remedy, true};
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    if (begin != std::string_view::npos && text[begin] == '{')
-        return recogniseJson(text);
-    if (looksLikeObj(text))
-        return {FileType::MeshSource, "a Wavefront OBJ mesh", kBake};
-    return {FileType::Other, "no file that assetc knows",
-            "it reads compiled meshes and environments, glTF, OBJ, OpenEXR, Radiance .hdr, "
-            "manifests, light descriptions and scenes"};
+    std::string ending = name.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending == ".obj";
 }
 
-std::string otherKindText(std::span<const std::byte> bytes, FileType wanted)
+const char* nameOf(FileType wanted)
 {
-    const RecognisedFile file = recogniseFile(bytes);
-    const bool known = file.bySignature || file.type != FileType::Other;
-    return known && file.type != wanted ? fileTypeText(file) : std::string();
+    return wanted == FileType::Manifest            ? "a manifest"
+           : wanted == FileType::LightSpec         ? "a light description"
+           : wanted == FileType::Scene             ? "a scene"
+           : wanted == FileType::EnvironmentSource ? "a map"
+                                                   : "a mesh";
+}
+
+std::string_view textOf(std::span<const std::byte> bytes)
+{
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+} // namespace
+
+RecognisedFile recogniseHead(std::span<const std::byte> bytes, const std::filesystem::path& name)
+{
+    std::string_view text = textOf(bytes);
+    if (text.empty())
+        return {FileType::Other, "an empty file", "write it again"};
+    for (const Signature& signature : kSignatures)
+        if (text.starts_with(signature.begin))
+            return {signature.type, signature.what, signature.remedy};
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text.starts_with(kByteOrderMark))
+        text.remove_prefix(kByteOrderMark.size());
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin != std::string_view::npos && (text[begin] == '{' || text[begin] == '['))
+        return {FileType::OtherJson, {}, {}};
+    if (looksLikeObj(text) || endsInObj(name))
+        return {FileType::MeshSource, "a Wavefront OBJ mesh", kBake};
+    return {FileType::Other, "no file that assetc knows",
+            "it reads meshes as glTF (.glb, .gltf) and OBJ (.obj), maps as OpenEXR (.exr) and "
+            "Radiance (.hdr), manifests, light descriptions, and what it wrote itself"};
+}
+
+RecognisedFile recogniseFile(std::span<const std::byte> bytes, const std::filesystem::path& name)
+{
+    const std::string_view text = textOf(bytes);
+    if (text.starts_with("glTF"))
+        return recogniseGlb(bytes);
+    RecognisedFile file = recogniseHead(bytes, name);
+    return file.type == FileType::OtherJson ? recogniseJson(text) : file;
 }
 
 std::string fileTypeText(const RecognisedFile& file)
 {
-    return file.remedy.empty() ? file.what : file.what + "; " + file.remedy;
+    return file.what + "; " + file.remedy;
+}
+
+Result<std::vector<std::byte>> readInput(const std::filesystem::path& path, FileType wanted,
+                                         std::uint64_t maxBytes)
+{
+    auto head = readFileHead(path, maxBytes);
+    if (!head)
+        return head.error();
+    const bool json =
+        wanted == FileType::Manifest || wanted == FileType::LightSpec || wanted == FileType::Scene;
+    const bool whole = head->fileBytes <= maxBytes; // else its beginning may say enough
+    const RecognisedFile file =
+        whole ? recogniseFile(head->bytes, path) : recogniseHead(head->bytes, path);
+    const bool fits = file.type == wanted || (json && file.type == FileType::OtherJson);
+    if (!fits && (whole || !file.what.empty()))
+        return Error{fmt::format("{}: {}", path.string(), fileTypeText(file))};
+    if (!whole)
+        return Error{fmt::format("{}: {} bytes, and {} has at most {}; make it smaller, or name "
+                                 "another file",
+                                 path.string(), head->fileBytes, nameOf(wanted), maxBytes)};
+    return std::move(head->bytes);
 }
 
 } // namespace penumbra

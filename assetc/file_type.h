@@ -2,14 +2,18 @@
 // what it is and what to do with it.
 #pragma once
 
+#include "runtime/result.h"
+
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace penumbra {
 
 enum class FileType {
-    MeshAsset,         // compiled; binary glTF too that is too damaged to tell
+    MeshAsset,         // compiled
     Environment,       // compiled
     MeshSource,        // glTF or OBJ
     EnvironmentSource, // OpenEXR or Radiance
@@ -17,24 +21,32 @@ enum class FileType {
     LightSpec,         // of assetc light
     Scene,             // scene.json
     Report,            // JSON that assetc wrote about files
-    Other
+    OtherJson,
+    Other // damaged beyond telling, too
 };
 
 struct RecognisedFile {
     FileType type = FileType::Other;
-    std::string what;         // "an OpenEXR picture"
-    std::string remedy;       // "compile it with assetc environment"; empty for what is compiled
-    bool bySignature = false; // beyond doubt: its first bytes are those of no other format
+    std::string what;   // "an OpenEXR picture"
+    std::string remedy; // "compile it with assetc environment"
 };
 
-// Any bytes. Says nothing of whether the file is whole.
-RecognisedFile recogniseFile(std::span<const std::byte> bytes);
+// Any bytes. Says nothing of whether the file is whole. The name counts only for OBJ, which has no
+// signature: what is nothing else and ends in .obj is meant as one.
+RecognisedFile recogniseFile(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
-// Where the bytes are beyond doubt of another kind than `wanted`: what they are, what to do with
-// them. Empty where they may be meant as the wanted kind.
-std::string otherKindText(std::span<const std::byte> bytes, FileType wanted);
+// The same by the first bytes alone: a binary glTF file may be a compiled one, and JSON is
+// OtherJson without a text.
+RecognisedFile recogniseHead(std::span<const std::byte> bytes, const std::filesystem::path& name);
 
 // "an OpenEXR picture; compile it with assetc environment".
 std::string fileTypeText(const RecognisedFile& file);
+
+// The bytes of a file that is of the `wanted` kind, for its reader; all commands read their inputs
+// by it and so say the same of a wrong one. OtherJson passes for a kind that is JSON: its reader
+// knows what is missing. Error, with the path: cannot be read, another kind, larger than
+// `maxBytes`, which are the most that get memory.
+Result<std::vector<std::byte>> readInput(const std::filesystem::path& path, FileType wanted,
+                                         std::uint64_t maxBytes);
 
 } // namespace penumbra

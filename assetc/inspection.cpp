@@ -1,6 +1,7 @@
 #include "assetc/inspection.h"
 
 #include "assetc/environment.h"
+#include "assetc/light/input.h"
 #include "assetc/report.h"
 #include "assetc/sheet/contact_sheet.h"
 #include "assetc/source_report.h"
@@ -34,7 +35,7 @@ void inspectMeshAsset(std::span<const std::byte> bytes, bool sheet, Inspection& 
     describe(result, [&](bool json) { return describeAsset(*mesh, bytes.size(), json); });
     if (sheet) {
         result.sheet = drawMeshSheet(*mesh, bytes.size());
-        result.sheetText = kMeshSheetText;
+        result.sheetText = meshSheetText(*mesh);
     }
 }
 
@@ -53,17 +54,28 @@ void inspectEnvironment(std::span<const std::byte> bytes, bool sheet, Inspection
     }
 }
 
+// What baking a mesh would refuse before it bakes.
+void checkMesh(ImportedMesh imported, const std::string& place, Inspection& result)
+{
+    CompiledAsset asset;
+    asset.mesh = std::move(imported.mesh);
+    if (const auto prepared = prepareMesh(asset, place, {}); !prepared)
+        result.problems.push_back(prepared.error());
+}
+
 void inspectSource(const std::filesystem::path& path, const RecognisedFile& file, std::size_t bytes,
                    Inspection& result)
 {
     std::vector<AskedFile> asked;
     if (file.type == FileType::MeshSource) {
-        if (const auto mesh = importMesh(path, &asked))
+        if (auto mesh = importMesh(path, &asked)) {
             describe(result, [&](bool json) {
                 return describeMeshSource(file, *mesh, asked, bytes, json);
             });
-        else
+            checkMesh(std::move(*mesh), path.string(), result);
+        } else {
             result.problems.push_back(mesh.error());
+        }
     } else if (file.type == FileType::EnvironmentSource) {
         if (const auto environment = importEnvironment(path))
             describe(result, [&](bool json) {
@@ -71,11 +83,14 @@ void inspectSource(const std::filesystem::path& path, const RecognisedFile& file
             });
         else
             result.problems.push_back(environment.error());
-    } else if (const auto spec = readLightSpec(path, &asked)) {
-        describe(result,
-                 [&](bool json) { return describeLightSpec(file, *spec, asked, bytes, json); });
+    } else if (auto light = readLightInput(path, &asked)) {
+        describe(result, [&](bool json) {
+            return describeLightSpec(file, light->spec, asked, bytes, json);
+        });
+        if (light->mesh)
+            checkMesh(std::move(*light->mesh), path.string() + ": light.source", result);
     } else {
-        result.problems.push_back(spec.error());
+        result.problems.push_back(light.error());
     }
 }
 
@@ -83,7 +98,7 @@ void inspectList(const std::filesystem::path& path, const RecognisedFile& file, 
                  Inspection& result)
 {
     if (file.type == FileType::Manifest) {
-        if (const auto manifest = readManifest(path, result.problems))
+        if (const auto manifest = readManifest(path, result.problems, ManifestSources::Checked))
             describe(result,
                      [&](bool json) { return describeManifest(file, *manifest, bytes, json); });
     } else if (const auto scene = readSceneFile(path, result.problems)) {
@@ -101,7 +116,8 @@ Inspection inspectFile(const std::filesystem::path& path, bool sheet)
         result.problems.push_back(withoutName(bytes.error(), path));
         return result;
     }
-    const RecognisedFile file = recogniseFile(*bytes);
+    const RecognisedFile file = recogniseFile(*bytes, path);
+    result.type = file.type;
     result.what = file.what;
     switch (file.type) {
     case FileType::MeshAsset:
@@ -122,6 +138,7 @@ Inspection inspectFile(const std::filesystem::path& path, bool sheet)
     case FileType::Report:
         describe(result, [&](bool json) { return describeReport(file, bytes->size(), json); });
         break;
+    case FileType::OtherJson:
     case FileType::Other:
         result.problems.push_back({fileTypeText(file)});
         break;

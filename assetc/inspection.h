@@ -1,6 +1,7 @@
 // What is in a file, of any kind that assetc knows.
 #pragma once
 
+#include "assetc/file_type.h"
 #include "assetc/sheet/canvas.h"
 #include "runtime/result.h"
 
@@ -12,6 +13,7 @@
 namespace penumbra {
 
 struct Inspection {
+    FileType type = FileType::Other;
     std::string what;            // the file is, empty where it cannot be read
     std::string text, json;      // about a valid file, for people and for programs
     std::vector<Error> problems; // without the file's name; none: valid
@@ -19,7 +21,7 @@ struct Inspection {
     std::string sheetText;       // what is on it
 };
 
-// Told by its content, not its name. A source is valid if it can be read.
+// Told by its content, not its name. A source is valid if its compiler would read it to the end.
 Inspection inspectFile(const std::filesystem::path& path, bool sheet);
 
 } // namespace penumbra

@@ -1,8 +1,10 @@
 // assetc: the command line of the asset compiler. Says what was asked; assetc/commands does it.
 #include "assetc/commands/commands.h"
+#include "assetc/commands/usage.h"
+#include "assets/mesh_format.h"
 
 #include <CLI/CLI.hpp>
-#include <numeric>
+#include <charconv>
 #include <optional>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -17,67 +19,37 @@ std::string checkSide(const std::string& text)
     for (unsigned side = 3; side <= kMaxFieldSide; side = 2 * side - 1)
         if (text == std::to_string(side))
             return {};
-    return fmt::format("{} is not 2^k + 1 from 3 to {}", text, kMaxFieldSide);
+    return fmt::format("\"{}\" is not 2^k + 1 from 3 to {}", text, kMaxFieldSide);
 }
 
-// CLI::Range lets NaN pass.
-CLI::Validator finiteRange(double min, double max)
+// CLI::Range lets NaN pass and says of text that it is out of range.
+template <class Number>
+CLI::Validator numberRange(Number min, Number max)
 {
     return {[min, max](std::string& text) {
-                char* end = nullptr;
-                const double value = std::strtod(text.c_str(), &end);
-                return *end == 0 && end != text.c_str() && value >= min && value <= max
+                Number value = 0;
+                const char* last = text.data() + text.size();
+                const auto [end, error] = std::from_chars(text.data(), last, value);
+                return error == std::errc{} && end == last && value >= min && value <= max
                            ? std::string()
-                           : fmt::format("{} is not a number from {} to {}", text, min, max);
+                           : fmt::format("\"{}\" is not a {}number from {} to {}", text,
+                                         std::is_integral_v<Number> ? "whole " : "", min, max);
             },
             fmt::format("{} to {}", min, max)};
 }
 
 std::string checkEven(const std::string& text)
 {
-    return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string() : text + " is not even";
-}
-
-// Single letters to insert, delete or replace to make `b` of `a`.
-std::size_t editDistance(std::string_view a, std::string_view b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j)
-            diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1,
-                                                           diagonal + (a[i] == b[j] ? 0 : 1)}));
-    }
-    return row.back();
-}
-
-// CLI11 says of a wrong command only that one is required. Empty where the first word is one.
-std::string checkCommand(const CLI::App& app, std::string_view word)
-{
-    constexpr std::size_t kMostEdits = 2; // more is another word, not a slip
-    const CLI::App* nearest = nullptr;
-    std::size_t edits = kMostEdits + 1;
-    std::string names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        const std::size_t distance = editDistance(word, command->get_name());
-        if (distance == 0)
-            return {};
-        if (distance < edits) {
-            edits = distance;
-            nearest = command;
-        }
-        names += (names.empty() ? "" : ", ") + command->get_name();
-    }
-    const std::string start = fmt::format("\"{}\" is not a command; ", word);
-    return start + (nearest ? "did you mean " + nearest->get_name() + "?" : "known: " + names);
+    return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string()
+                                                         : fmt::format("\"{}\" is not even", text);
 }
 
 int run(int argc, char** argv)
 {
     CLI::App app("assetc: compiles meshes, lights and environment maps into Penumbra's assets");
     app.require_subcommand(1);
-    app.failure_message(CLI::FailureMessage::simple);
+    app.set_version_flag(
+        "--version", fmt::format("assetc {}, asset format {}", PENUMBRA_VERSION, kFormatVersion));
 
     BakeArguments bake;
     unsigned jobs = 0;
@@ -91,11 +63,11 @@ int run(int argc, char** argv)
     bakeCommand->add_flag("--per-node", perNode,
                           "An asset per rigid mesh and a scene.json that places them");
     bakeCommand->add_option("--lods", bake.options.lods, "Levels of detail, each half of the last")
-        ->check(CLI::Range(0u, kMaxMeshLods))
+        ->check(numberRange(0u, kMaxMeshLods))
         ->capture_default_str();
     CLI::Option* shells =
         bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
-            ->check(CLI::Range(2u, kMaxFieldShells))
+            ->check(numberRange(2u, kMaxFieldShells))
             ->capture_default_str();
     CLI::Option* maxSide = bakeCommand
                                ->add_option("--max-side", bake.options.bake.side,
@@ -105,14 +77,14 @@ int run(int argc, char** argv)
     CLI::Option* directions = bakeCommand
                                   ->add_option("--directions", bake.options.bake.directions,
                                                "Directions per sample, even")
-                                  ->check(CLI::Range(2u, 65536u))
+                                  ->check(numberRange(2u, 65536u))
                                   ->check(CLI::Validator(checkEven, "even"))
                                   ->capture_default_str();
     bakeCommand
         ->add_option("--threshold", bake.options.adaptThreshold,
                      "Error up to which a shell takes a coarser grid (Tamura 2006, Eq. 1); 0: all "
                      "shells keep theirs")
-        ->check(finiteRange(0, 1))
+        ->check(numberRange(0.0, 1.0))
         ->capture_default_str();
     CLI::Option* targetError =
         bakeCommand
@@ -120,7 +92,7 @@ int run(int argc, char** argv)
                 "--target-error", bake.options.targetError,
                 "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
                 "threshold")
-            ->check(finiteRange(1e-4, 1));
+            ->check(numberRange(1e-4, 1.0));
     CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
     for (CLI::Option* option : {shells, maxSide, directions, noFieldFlag})
         targetError->excludes(option);
@@ -129,7 +101,7 @@ int run(int argc, char** argv)
                    "Compare a sample of the field with traced rays")
         ->excludes(noFieldFlag);
     bakeCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(CLI::Range(1u, 1024u));
+        ->check(numberRange(1u, 1024u));
     bakeCommand->add_option("--report", bake.report, "Write what was done as JSON");
 
     LightArguments light;
@@ -139,7 +111,7 @@ int run(int argc, char** argv)
     lightCommand->add_option("SPEC", light.input, ".json")->required();
     lightCommand->add_option("-o,--output", light.output, "OUT.glb")->required();
     lightCommand->add_option("--shells", light.options.shells, "Shells of the field")
-        ->check(CLI::Range(2u, kMaxFieldShells))
+        ->check(numberRange(2u, kMaxFieldShells))
         ->capture_default_str();
     lightCommand
         ->add_option("--max-side", light.options.side, "Nodes along a shell's edge, 2^k + 1")
@@ -148,17 +120,17 @@ int run(int argc, char** argv)
     lightCommand
         ->add_option("--directions", light.options.directions,
                      "Rays per sample of a mesh, even; other shapes need none")
-        ->check(CLI::Range(2u, 65536u))
+        ->check(numberRange(2u, 65536u))
         ->check(CLI::Validator(checkEven, "even"))
         ->capture_default_str();
     lightCommand
         ->add_option("--threshold", light.options.adaptThreshold,
                      "Error up to which a shell takes a coarser grid, as a part of the light at "
                      "the brightest place; 0: all shells keep --max-side")
-        ->check(finiteRange(0, 1))
+        ->check(numberRange(0.0, 1.0))
         ->capture_default_str();
     lightCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(CLI::Range(1u, 1024u));
+        ->check(numberRange(1u, 1024u));
     lightCommand->add_option("--report", light.report, "Write what was done as JSON");
 
     EnvironmentArguments environment;
@@ -174,7 +146,7 @@ int run(int argc, char** argv)
     buildCommand->add_option("MANIFEST", build.manifest, "See docs/build_manifest.md")->required();
     buildCommand->add_option("-o,--output", build.output, "Folder of the outputs")->required();
     buildCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(CLI::Range(1u, 1024u));
+        ->check(numberRange(1u, 1024u));
     buildCommand->add_flag("--watch", build.watch, "Build again at each change, until interrupted");
     buildCommand->add_option("--report", build.report, "Write what was done as JSON");
 
@@ -200,7 +172,8 @@ int run(int argc, char** argv)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kExitDone : kExitUsage; // 0: help was asked for
+        const bool asked = error.get_exit_code() == 0; // for help or version
+        return asked ? app.exit(error) : refuseUsage(app, error);
     }
     std::optional<tbb::global_control> limit;
     if (jobs > 0)

@@ -57,7 +57,7 @@ int versionOf(std::span<const std::byte> bytes)
 // looks whether the file has it.
 Result<void> checkAttributes(std::span<const std::byte> bytes)
 {
-    const Error cut{"OpenEXR: the file is cut in its header"};
+    const Error cut{"OpenEXR: the file is cut in its header; copy or save it again"};
     if (bytes.size() < kAttributesAt)
         return cut;
     const bool multiPart = (versionOf(bytes) & kMultiPart) != 0;
@@ -140,8 +140,8 @@ Result<EnvironmentSource> read(std::span<const std::byte> bytes, PictureLimit li
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width < 1 || width > limit.width || height < 1 || height > limit.height)
-        return Error{fmt::format("{} x {} pixels, the limit is {} x {}", width, height, limit.width,
-                                 limit.height)};
+        return Error{fmt::format("{} x {} pixels, the limit is {} x {}; scale it down", width,
+                                 height, limit.width, limit.height)};
     const Imf::ChannelList& channels = header.channels();
     const bool rgb =
         channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
@@ -199,7 +199,7 @@ Result<EnvironmentSource> decodeOpenExr(std::span<const std::byte> bytes, Pictur
         Imf::Header::setMaxTileSize(kMaxSourceWidth, kMaxSourceHeight);
         return read(bytes, limit);
     } catch (const std::exception& error) {
-        return Error{fmt::format("OpenEXR: {}", error.what())};
+        return Error{fmt::format("OpenEXR: {}; copy or save it again", error.what())};
     }
 }
 

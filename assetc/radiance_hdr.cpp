@@ -111,20 +111,21 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, Pi
         rgbe |= line == "FORMAT=32-bit_rle_rgbe";
     EnvironmentSource source;
     if (!parseSize(reader.line(), source.height, source.width) || reader.failed)
-        return Error{
-            "no size line of the form \"-Y height +X width\"; other orientations are not read"};
+        return Error{"no size line of the form \"-Y height +X width\"; save it upright, or again "
+                     "if it is cut"};
     if (!rgbe)
         return Error{"FORMAT is not 32-bit_rle_rgbe; convert the picture to RGBE"};
     if (source.width < 1 || source.width > limit.width || source.height < 1 ||
         source.height > limit.height)
-        return Error{fmt::format("{} x {} pixels, the limit is {} x {}", source.width,
-                                 source.height, limit.width, limit.height)};
+        return Error{fmt::format("{} x {} pixels, the limit is {} x {}; scale it down",
+                                 source.width, source.height, limit.width, limit.height)};
     // A run code and its value make at most 127 pixels of one component: a cheap bound before
     // memory is taken.
     const std::size_t pixels = std::size_t{source.width} * source.height;
     if (reader.left() < pixels / 127 * 8)
-        return Error{fmt::format("{} bytes of pixels, too few for {} x {}; the file is cut",
-                                 reader.left(), source.width, source.height)};
+        return Error{fmt::format(
+            "{} bytes of pixels, too few for {} x {}: the file is cut; copy or save it again",
+            reader.left(), source.width, source.height)};
     source.pixels.reserve(pixels);
     std::vector<Rgbe> row(source.width);
     for (std::uint32_t y = 0; y < source.height; ++y) {
@@ -140,7 +141,8 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, Pi
                 row[x] = reader.pixel();
         }
         if (!good || reader.failed)
-            return Error{fmt::format("row {} of {} is damaged or cut", y, source.height)};
+            return Error{fmt::format("row {} of {} is damaged or cut; copy or save it again", y,
+                                     source.height)};
         for (const Rgbe& pixel : row)
             source.pixels.push_back(radiance(pixel));
     }

@@ -158,6 +158,24 @@ std::string compileReport(const std::filesystem::path& source, const CompiledAss
     return text(compileJson(source, asset));
 }
 
+std::string checksText(const CompileReport& report, const std::string& place)
+{
+    std::string out;
+    if (report.target)
+        for (const TargetTrial& trial : report.target->trials)
+            out += fmt::format("{}target: {} shells of {}², {} directions, threshold {:.4f}: error "
+                               "{:.4f}, field of {} bytes unpacked, {:.1f} s\n",
+                               place, trial.options.shells, trial.options.side,
+                               trial.options.directions, trial.threshold, trial.error, trial.bytes,
+                               trial.seconds);
+    if (const auto& verify = report.verify)
+        out += fmt::format("{}verify: {} samples with {} rays each: coefficients differ by {:.4f} "
+                           "rms, {:.3f} at most (at {:.2f} bounding radii)\n",
+                           place, verify->samples, verify->directions, verify->rms, verify->max,
+                           verify->worstRadius);
+    return out;
+}
+
 std::string lightReport(const std::filesystem::path& source, const CompiledLight& light)
 {
     Json result = compileJson(source, light.asset);

@@ -12,6 +12,10 @@ namespace penumbra {
 // JSON of `assetc bake --report`; ends in a line feed.
 std::string compileReport(const std::filesystem::path& source, const CompiledAsset& asset);
 
+// What the bake measured as it went, a line each, `place` in front: trials of --target-error, then
+// --verify. Empty where neither was asked for.
+std::string checksText(const CompileReport& report, const std::string& place = {});
+
 // JSON of `assetc light --report`; ends in a line feed.
 std::string lightReport(const std::filesystem::path& source, const CompiledLight& light);
 // The same of each asset of a scene.

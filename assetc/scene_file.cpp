@@ -1,9 +1,10 @@
 #include "assetc/scene_file.h"
 
+#include "assetc/file_type.h"
 #include "assetc/import/folder.h"
 #include "assets/light_json.h"
 #include "assets/shadow_field.h"
-#include "runtime/file.h"
+#include "runtime/ecs/scene_file.h"
 
 #include <limits>
 
@@ -12,8 +13,8 @@ namespace penumbra {
 namespace {
 
 constexpr std::uint64_t kSceneVersion = 1;
-constexpr std::size_t kMaxSceneBytes = 256u << 20;
-constexpr std::size_t kMaxEntities = 1u << 20;
+using ecs::kMaxSceneBytes; // the same bounds as the reader of the runtime
+constexpr std::size_t kMaxEntities = ecs::kMaxSceneEntities;
 
 template <std::size_t Count>
 std::array<float, Count> numbers(const JsonReader& array, float max)
@@ -44,9 +45,11 @@ void readAsset(const JsonReader& component, const std::filesystem::path& folder,
     component.refuseOthers({"asset"});
     const JsonReader asset = component.member("asset");
     const std::string name = asset.asText();
-    if (name.empty() || !scene.assets.insert(name).second)
+    if (!asset.isText() || !scene.assets.insert(name).second)
         return;
-    if (const auto found = resolveInFolder(folder, name); !found)
+    if (name.empty())
+        asset.refuse("is empty; name a compiled mesh beside the scene");
+    else if (const auto found = resolveInFolder(folder, name); !found)
         asset.refuse("names a file that cannot be used: " + found.error().message);
 }
 
@@ -76,7 +79,7 @@ void readEntity(const JsonReader& entity, std::size_t index, const std::filesyst
 
 std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonProblems& problems)
 {
-    const auto bytes = readFile(file, kMaxSceneBytes);
+    const auto bytes = readInput(file, FileType::Scene, kMaxSceneBytes);
     if (!bytes) {
         problems.push_back(bytes.error());
         return std::nullopt;
@@ -89,10 +92,7 @@ std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonPr
     }
     JsonProblems found;
     const JsonReader root(*document, "", found);
-    if (root.count("version", std::numeric_limits<std::uint32_t>::max()) != kSceneVersion &&
-        found.empty())
-        root.member("version").refuse(
-            fmt::format("is not {}, the only one that this program reads", kSceneVersion));
+    root.checkVersion(kSceneVersion);
     SceneFile scene;
     const JsonReader entities = root.member("entities");
     scene.entities = entities.length(kMaxEntities);

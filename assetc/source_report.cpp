@@ -1,5 +1,7 @@
 #include "assetc/source_report.h"
 
+#include "assetc/words.h"
+
 #include <map>
 
 namespace penumbra {
@@ -79,8 +81,8 @@ std::string describeMeshSource(const RecognisedFile& file, const ImportedMesh& m
     }
     const vec3 size = high - low;
     std::string out = headText(file, fileBytes);
-    out += fmt::format("mesh      {} vertices, {} triangles, {:.4g} x {:.4g} x {:.4g} m\n",
-                       positions.size(), mesh.mesh.indices.size() / 3, size.x, size.y, size.z);
+    out += fmt::format("mesh      {} vertices, {}, {:.4g} x {:.4g} x {:.4g} m\n", positions.size(),
+                       counted(mesh.mesh.indices.size() / 3, "triangle"), size.x, size.y, size.z);
     out += fmt::format("material  albedo {:.3f} {:.3f} {:.3f}\n", albedo.r, albedo.g, albedo.b);
     out += filesText(asked);
     for (const std::string& warning : mesh.warnings)
@@ -157,9 +159,9 @@ std::string describeScene(const RecognisedFile& file, const SceneFile& scene, st
         result["assets"] = scene.assets;
         return text(result);
     }
-    std::string out =
-        fmt::format("scene     {} bytes: {} entities, {} with a mesh, {} with a field, {} lights\n",
-                    fileBytes, scene.entities, scene.meshes, scene.occluders, scene.lights);
+    std::string out = fmt::format("scene     {} bytes: {}, {} with a mesh, {} with a field, {}\n",
+                                  fileBytes, counted(scene.entities, "entity", "entities"),
+                                  scene.meshes, scene.occluders, counted(scene.lights, "light"));
     for (const std::string& asset : scene.assets)
         out += fmt::format("asset     {}\n", asset);
     return out;

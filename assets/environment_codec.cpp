@@ -97,23 +97,24 @@ Result<Environment> decodeEnvironment(std::span<const std::byte> bytes)
                         header.major, header.minor, kMajor)};
     if (header.mapWidth < 1 || header.mapWidth > kMaxEnvironmentWidth || header.mapHeight < 1 ||
         header.mapHeight > kMaxEnvironmentHeight)
-        return Error{fmt::format("map of {} x {}, the limit is {} x {}", header.mapWidth,
-                                 header.mapHeight, kMaxEnvironmentWidth, kMaxEnvironmentHeight)};
+        return Error{fmt::format("map of {} x {}, the limit is {} x {}; compile it again",
+                                 header.mapWidth, header.mapHeight, kMaxEnvironmentWidth,
+                                 kMaxEnvironmentHeight)};
     const std::size_t pixels = std::size_t{header.mapWidth} * header.mapHeight;
     const std::size_t wanted = sizeof(header) + pixels * sizeof(HalfPixel) + sizeof(std::uint64_t);
     if (bytes.size() != wanted)
-        return Error{
-            fmt::format("{} bytes, a map of {} x {} makes {}; the file is cut or has a tail",
-                        bytes.size(), header.mapWidth, header.mapHeight, wanted)};
+        return Error{fmt::format(
+            "{} bytes, a map of {} x {} makes {}; the file is cut or has a tail; compile it again",
+            bytes.size(), header.mapWidth, header.mapHeight, wanted)};
     std::uint64_t sum;
     std::memcpy(&sum, bytes.data() + wanted - sizeof(sum), sizeof(sum));
     if (sum != checksum(bytes.first(wanted - sizeof(sum))))
         return Error{"checksum differs, the file is damaged; compile it again"};
     if (!finiteAndNotNegative(header.clampedAt) || !finiteAndNotNegative(header.meanLuminance) ||
         !finiteAndNotNegative(header.maxLuminance))
-        return Error{"statistics are negative or not finite"};
+        return Error{"statistics are negative or not finite; compile it again"};
     if (header.reserved != 0)
-        return Error{"reserved word at byte 52 is not 0"};
+        return Error{"reserved word at byte 52 is not 0; compile it again"};
 
     Environment environment;
     environment.mapWidth = header.mapWidth;
@@ -124,7 +125,7 @@ Result<Environment> decodeEnvironment(std::span<const std::byte> bytes)
     for (int k = 0; k < 36; ++k) {
         const vec3 c(header.sh6[k][0], header.sh6[k][1], header.sh6[k][2]);
         if (!std::isfinite(c.r) || !std::isfinite(c.g) || !std::isfinite(c.b))
-            return Error{fmt::format("SH coefficient {} is not finite", k)};
+            return Error{fmt::format("SH coefficient {} is not finite; compile it again", k)};
         environment.sh6[k] = c;
         if (k < 16)
             environment.sh4[k] = c;
@@ -134,8 +135,9 @@ Result<Environment> decodeEnvironment(std::span<const std::byte> bytes)
         HalfPixel p;
         std::memcpy(&p, bytes.data() + sizeof(header) + i * sizeof(p), sizeof(p));
         if (p.r >= kHalfInfinity || p.g >= kHalfInfinity || p.b >= kHalfInfinity)
-            return Error{fmt::format("map pixel ({}, {}) is negative or not finite",
-                                     i % header.mapWidth, i / header.mapWidth)};
+            return Error{
+                fmt::format("map pixel ({}, {}) is negative or not finite; compile it again",
+                            i % header.mapWidth, i / header.mapWidth)};
         environment.map[i] = {glm::unpackHalf1x16(p.r), glm::unpackHalf1x16(p.g),
                               glm::unpackHalf1x16(p.b)};
     }

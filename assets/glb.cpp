@@ -36,12 +36,14 @@ std::size_t padded(std::size_t size)
 
 Result<GlbView> readGlb(std::span<const std::byte> bytes)
 {
-    if (bytes.size() < kHeaderBytes || readWord(bytes, 0) != kMagic)
-        return Error{"not a binary glTF file: no \"glTF\" header"};
+    if (bytes.size() < sizeof(kMagic) || readWord(bytes, 0) != kMagic)
+        return Error{"not a binary glTF file: it does not begin with \"glTF\""};
+    if (bytes.size() < kHeaderBytes)
+        return Error{fmt::format("{} bytes: cut in its header", bytes.size())};
     if (readWord(bytes, 4) != 2)
         return Error{fmt::format("binary glTF version {}, only 2 is read", readWord(bytes, 4))};
     if (readWord(bytes, 8) != bytes.size())
-        return Error{fmt::format("header says {} bytes, file has {}: truncated or with a tail",
+        return Error{fmt::format("header says {} bytes, file has {}: cut or with a tail",
                                  readWord(bytes, 8), bytes.size())};
 
     GlbView view;

@@ -98,21 +98,22 @@ std::size_t JsonReader::length(std::size_t max) const
     if (!m_value)
         return 0;
     if (!m_value->is_array() || m_value->size() > max) {
-        refuse(fmt::format("is not an array of at most {}", max));
+        refuse(fmt::format("is {}, not an array of at most {}", quoted(), max));
         return 0;
     }
     return m_value->size();
 }
 
-std::uint64_t JsonReader::asCount(std::uint64_t max) const
+std::uint64_t JsonReader::asCount(std::uint64_t max, std::uint64_t min) const
 {
     if (!m_value)
         return 0;
-    if (!m_value->is_number_unsigned() || m_value->get<std::uint64_t>() > max) {
-        refuse(fmt::format("is not a whole number from 0 to {}", max));
+    const std::uint64_t value = m_value->is_number_unsigned() ? m_value->get<std::uint64_t>() : 0;
+    if (!m_value->is_number_unsigned() || value < min || value > max) {
+        refuse(fmt::format("is {}, not a whole number from {} to {}", quoted(), min, max));
         return 0;
     }
-    return m_value->get<std::uint64_t>();
+    return value;
 }
 
 float JsonReader::asNumber(float min, float max) const
@@ -121,7 +122,7 @@ float JsonReader::asNumber(float min, float max) const
         return 0;
     const double value = m_value->is_number() ? m_value->get<double>() : std::nan("");
     if (!(value >= min && value <= max)) {
-        refuse(fmt::format("is not a number from {} to {}", min, max));
+        refuse(fmt::format("is {}, not a number from {} to {}", quoted(), min, max));
         return 0;
     }
     return static_cast<float>(value);
@@ -132,7 +133,7 @@ std::string JsonReader::asText() const
     if (!m_value)
         return {};
     if (!m_value->is_string()) {
-        refuse("is not text");
+        refuse(fmt::format("is {}, not text", quoted()));
         return {};
     }
     return m_value->get<std::string>();
@@ -143,7 +144,7 @@ bool JsonReader::asFlag() const
     if (!m_value)
         return false;
     if (!m_value->is_boolean()) {
-        refuse("is not true or false");
+        refuse(fmt::format("is {}, not true or false", quoted()));
         return false;
     }
     return m_value->get<bool>();
@@ -154,7 +155,7 @@ void JsonReader::refuseOthers(std::initializer_list<std::string_view> known) con
     if (!m_value)
         return;
     if (!m_value->is_object()) {
-        refuse("is not an object");
+        refuse(fmt::format("is {}, not an object", quoted()));
         return;
     }
     for (const auto& [key, value] : m_value->items())
@@ -182,10 +183,31 @@ std::string JsonReader::text(const char* key) const
 
 bool JsonReader::flag(const char* key) const
 {
-    const JsonReader value = member(key);
-    if (value.m_value && !value.m_value->is_boolean())
-        value.refuse("is not true or false");
-    return value.m_value && value.m_value->is_boolean() && value.m_value->get<bool>();
+    return member(key).asFlag();
+}
+
+void JsonReader::checkVersion(std::uint64_t version) const
+{
+    if (!has("version"))
+        refuse(fmt::format("has no \"version\"; add \"version\": {}", version));
+    else if (const JsonReader stated = member("version"); *stated.m_value != version)
+        stated.refuse(fmt::format("is {}, this program reads {}", stated.quoted(), version));
+}
+
+std::string JsonReader::quoted() const
+{
+    if (!m_value)
+        return "missing";
+    if (m_value->is_array())
+        return fmt::format("an array of {}", m_value->size());
+    if (m_value->is_object())
+        return "an object";
+    constexpr std::size_t kMost = 40;
+    nlohmann::json value = *m_value;
+    if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
+        value = value.get_ref<const std::string&>().substr(0, kMost - 3) + "...";
+    // Escaped: no control characters on a terminal.
+    return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }
 
 void JsonReader::refuse(const std::string& what) const

@@ -40,13 +40,17 @@ public:
     [[nodiscard]] JsonReader element(std::size_t index) const;
     [[nodiscard]] bool has(const char* key) const;
     [[nodiscard]] bool isText() const { return m_value && m_value->is_string(); }
+    [[nodiscard]] bool isArrayOf(std::size_t count) const
+    {
+        return m_value && m_value->is_array() && m_value->size() == count;
+    }
 
     // A reader of nothing: has no members, reads as zero, reports nothing.
     [[nodiscard]] JsonReader missing() const { return {nullptr, m_place, *m_problems}; }
 
-    // The value itself: array length, whole number 0..max, finite number in [min, max], text.
+    // The value itself: array length, whole number min..max, finite number in [min, max], text.
     [[nodiscard]] std::size_t length(std::size_t max) const;
-    [[nodiscard]] std::uint64_t asCount(std::uint64_t max) const;
+    [[nodiscard]] std::uint64_t asCount(std::uint64_t max, std::uint64_t min = 0) const;
     [[nodiscard]] float asNumber(float min, float max) const;
     [[nodiscard]] std::string asText() const;
     [[nodiscard]] bool asFlag() const;
@@ -60,6 +64,12 @@ public:
     // Records a problem for each member that is none of `known`, or if this is no object. For files
     // that people write: there an unknown member is a slip of the pen.
     void refuseOthers(std::initializer_list<std::string_view> known) const;
+
+    // For files that people write: a problem unless the member "version" is `version`.
+    void checkVersion(std::uint64_t version) const;
+
+    // The value as a message quotes it: at most 40 bytes of text, "an array of 3" or "an object".
+    [[nodiscard]] std::string quoted() const;
 
     // Records a problem at this place.
     void refuse(const std::string& what) const;

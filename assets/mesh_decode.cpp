@@ -26,12 +26,17 @@ vec3 readVec3(const JsonReader& array)
 
 void checkVersion(const JsonReader& extension)
 {
+    if (!extension.has("version")) {
+        extension.refuse("has no \"version\"; compile the asset again");
+        return;
+    }
     const std::string version = extension.text("version");
     int major = 0;
     const auto parsed = std::from_chars(version.data(), version.data() + version.size(), major);
     if (parsed.ec != std::errc{} || parsed.ptr == version.data() + version.size() ||
         *parsed.ptr != '.')
-        extension.refuse(fmt::format("has version \"{}\", not MAJOR.MINOR", version));
+        extension.refuse(
+            fmt::format("has version \"{}\", not MAJOR.MINOR; compile the asset again", version));
     else if (major != kFormatMajor)
         extension.refuse(fmt::format(
             "has version {}, this program reads {}.x; compile the asset again with the assetc "
@@ -168,7 +173,8 @@ void readDocument(const nlohmann::json& document, std::span<const std::byte> bin
     mesh.images = readImages(root, bin);
     if (problems.size() == before && extension.has("imageChecksum") &&
         extension.text("imageChecksum") != imageChecksum(mesh.images))
-        extension.refuse("has an imageChecksum that its images do not: the file is damaged");
+        extension.refuse(
+            "has an imageChecksum that its images do not: the file is damaged; compile it again");
     mesh.lights = readPlacedLights(root);
     if (extension.has("bufferView"))
         mesh.field = readField(root, extension, bin, problems);

@@ -1,5 +1,6 @@
 #include "runtime/file.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -26,7 +27,7 @@ Error systemError(const std::filesystem::path& path, const char* what)
 
 } // namespace
 
-Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes)
+Result<FileHead> readFileHead(const std::filesystem::path& path, std::uint64_t maxBytes)
 {
     // O_NONBLOCK: opening a FIFO must not hang; it has no effect on regular files.
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
@@ -35,14 +36,14 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::
     struct stat status {};
     if (::fstat(file.fd, &status) != 0)
         return systemError(path, "cannot stat");
+    if (S_ISDIR(status.st_mode))
+        return Error{path.string() + ": a folder; name a file in it"};
     if (!S_ISREG(status.st_mode))
-        return Error{path.string() + ": not a regular file"};
-    const auto size = static_cast<std::uint64_t>(status.st_size);
-    if (size > maxBytes)
-        return Error{fmt::format("{}: {} bytes, larger than the limit of {} bytes", path.string(),
-                                 size, maxBytes)};
-
-    std::vector<std::byte> bytes(size);
+        return Error{path.string() + ": not a regular file; copy what it gives into one"};
+    FileHead head;
+    head.fileBytes = static_cast<std::uint64_t>(status.st_size);
+    std::vector<std::byte>& bytes = head.bytes;
+    bytes.resize(std::min(head.fileBytes, maxBytes));
     std::size_t done = 0;
     while (done < bytes.size()) {
         const ssize_t got = ::read(file.fd, bytes.data() + done, bytes.size() - done);
@@ -54,7 +55,18 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::
             return Error{path.string() + ": shrank while it was read"};
         done += static_cast<std::size_t>(got);
     }
-    return bytes;
+    return head;
+}
+
+Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes)
+{
+    auto head = readFileHead(path, maxBytes);
+    if (!head)
+        return head.error();
+    if (head->fileBytes > maxBytes)
+        return Error{fmt::format("{}: {} bytes, larger than the limit of {} bytes", path.string(),
+                                 head->fileBytes, maxBytes)};
+    return std::move(head->bytes);
 }
 
 Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes)

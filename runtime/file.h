@@ -12,8 +12,15 @@
 
 namespace penumbra {
 
-// The bytes of a regular file of at most `maxBytes`. A folder, a missing file or a larger one is an
-// Error.
+struct FileHead {
+    std::vector<std::byte> bytes;
+    std::uint64_t fileBytes = 0; // more than bytes.size() where the file goes on
+};
+
+// The first bytes of a regular file, at most `maxBytes`. A folder or a missing file is an Error.
+Result<FileHead> readFileHead(const std::filesystem::path& path, std::uint64_t maxBytes);
+
+// The bytes of a regular file of at most `maxBytes`. A larger one is an Error too.
 Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::uint64_t maxBytes);
 
 // Writes to a temporary name in the same folder and renames it over `path`; creates the folder.

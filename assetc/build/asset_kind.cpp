@@ -11,10 +11,7 @@ namespace {
 
 std::uint32_t wholeNumber(const JsonReader& value, std::uint32_t min, std::uint32_t max)
 {
-    const std::uint64_t number = value.asCount(max);
-    if (number < min)
-        value.refuse(fmt::format("is not a whole number from {} to {}", min, max));
-    return static_cast<std::uint32_t>(number);
+    return static_cast<std::uint32_t>(value.asCount(max, min));
 }
 
 // The members that meshes and lights share.
@@ -26,14 +23,14 @@ void readFieldOptions(const JsonReader& options, std::uint32_t& shells, std::uin
     if (options.has("maxSide")) {
         const JsonReader side = options.member("maxSide");
         maxSide = wholeNumber(side, 3, kMaxFieldSide);
-        if (((maxSide - 1) & (maxSide - 2)) != 0)
-            side.refuse("is not 2^k + 1");
+        if (maxSide > 0 && ((maxSide - 1) & (maxSide - 2)) != 0)
+            side.refuse(fmt::format("is {}, not 2^k + 1", maxSide));
     }
     if (options.has("directions")) {
         const JsonReader count = options.member("directions");
         directions = wholeNumber(count, 2, 65536);
         if (directions % 2 != 0)
-            count.refuse("is not even");
+            count.refuse(fmt::format("is {}, not even", directions));
     }
     if (options.has("threshold"))
         threshold = options.number("threshold", 0, 1);
@@ -114,11 +111,8 @@ Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, co
     if (!bytes)
         return fail(bytes.error(), source.string());
     CompiledBytes result{std::move(*bytes), {}, {}, environmentReport(*environment)};
-    const EnvironmentStatistics& statistics = environment->statistics;
-    if (statistics.negative + statistics.absurd > 0)
-        result.warnings.push_back(
-            fmt::format("{} pixels with negative channels and {} absurd ones were clamped",
-                        statistics.negative, statistics.absurd));
+    if (std::string mended = mendedText(environment->statistics); !mended.empty())
+        result.warnings.push_back(std::move(mended));
     return result;
 }
 

@@ -1,4 +1,5 @@
 #include "assetc/build/asset_build.h"
+#include "assetc/build/record.h"
 
 #include <algorithm>
 #include <atomic>
@@ -90,7 +91,7 @@ void addStaleParts(const ManifestAsset& asset, const AssetOutcome& outcome, cons
     }
 }
 
-// Outputs that are there and recorded, but of no asset of the manifest.
+// Outputs and parts that are there and recorded, but of no asset of the manifest.
 std::vector<std::string> staleOutputs(const Manifest& manifest,
                                       const std::vector<AssetOutcome>& outcomes,
                                       const AssetBuild& build, const fs::path& folder)
@@ -105,10 +106,17 @@ std::vector<std::string> staleOutputs(const Manifest& manifest,
          i.increment(error)) {
         if (i->path().extension() != ".json")
             continue;
-        std::string name = i->path().lexically_relative(records).replace_extension().string();
+        const fs::path output = i->path().lexically_relative(records).replace_extension();
+        if (known.contains(output.string()))
+            continue;
+        std::vector<fs::path> made = {output};
+        if (const auto record = readRecord(i->path()))
+            for (const RecordedPart& part : record->parts)
+                made.push_back(output.parent_path() / part.name);
         std::error_code ignored;
-        if (!known.contains(name) && fs::is_regular_file(folder / name, ignored))
-            stale.push_back(std::move(name));
+        for (const fs::path& file : made)
+            if (!known.contains(file.string()) && fs::is_regular_file(folder / file, ignored))
+                stale.push_back(file.string());
     }
     for (std::size_t i = 0; i < outcomes.size(); ++i)
         if (manifest.assets[i].kind->hasFolder() && outcomes[i].status != BuildStatus::Failed)

@@ -1,6 +1,7 @@
 #include "assetc/build/build_report.h"
 
 #include "assetc/build/build_progress.h"
+#include "assetc/words.h"
 #include "runtime/peak_memory.h"
 
 namespace penumbra {
@@ -41,9 +42,9 @@ Json assetJson(const ManifestAsset& asset, const AssetOutcome& outcome)
 
 std::string buildSummary(const std::filesystem::path& folder, const BuildOutcome& outcome)
 {
-    return fmt::format("{}: {} assets, {} built, {} unchanged, {} failed, {}", folder.string(),
-                       outcome.assets.size(), outcome.built, outcome.unchanged, outcome.failed,
-                       secondsText(outcome.seconds));
+    return fmt::format("{}: {}, {} built, {} unchanged, {} failed, {}", folder.string(),
+                       counted(outcome.assets.size(), "asset"), outcome.built, outcome.unchanged,
+                       outcome.failed, secondsText(outcome.seconds));
 }
 
 std::string buildReport(const Manifest& manifest, const std::filesystem::path& folder,

@@ -4,7 +4,6 @@
 #include "runtime/file.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 namespace penumbra {
@@ -54,6 +53,19 @@ std::string sourceEndings()
     return endings;
 }
 
+// Why a file can be no source at all, told by its beginning. Empty where it can.
+std::string wrongSource(const std::filesystem::path& source)
+{
+    constexpr std::uint64_t kHeadBytes = 64u << 10;
+    const auto head = readFileHead(source, kHeadBytes);
+    if (!head)
+        return "cannot be used: " + head.error().message;
+    const RecognisedFile file = recogniseHead(head->bytes, source);
+    return file.type == FileType::Other || file.type == FileType::Environment
+               ? "is " + fileTypeText(file)
+               : std::string();
+}
+
 const AssetKind* readKind(const JsonReader& asset, const std::filesystem::path& source)
 {
     const std::span<const AssetKind> kinds = assetKinds();
@@ -63,7 +75,7 @@ const AssetKind* readKind(const JsonReader& asset, const std::filesystem::path& 
             if (kind.name == name)
                 return &kind;
         asset.member("kind").refuse(
-            fmt::format("is \"{}\", known are {}", name.substr(0, 40), kindNames()));
+            fmt::format("is {}, known are {}", asset.member("kind").quoted(), kindNames()));
         return nullptr;
     }
     std::string ending = source.extension().string();
@@ -73,9 +85,12 @@ const AssetKind* readKind(const JsonReader& asset, const std::filesystem::path& 
         if (std::find(kind.sourceEndings.begin(), kind.sourceEndings.end(), ending) !=
             kind.sourceEndings.end())
             return &kind;
-    asset.member("source").refuse(
-        fmt::format("ends in \"{}\", known are {}; rename it or give the asset a \"kind\"",
-                    ending.substr(0, 40), sourceEndings()));
+    if (const std::string wrong = wrongSource(source); !wrong.empty())
+        asset.member("source").refuse(wrong);
+    else
+        asset.member("source").refuse(
+            fmt::format("is {}, whose ending is none of {}; give the asset a \"kind\"",
+                        asset.member("source").quoted(), sourceEndings()));
     return nullptr;
 }
 
@@ -159,19 +174,26 @@ void refuseSharedFolders(const Manifest& manifest, const JsonReader& assets,
     }
 }
 
+// Of the assets whose kind is known; of the others it is said already.
+void refuseMissingSources(const Manifest& manifest, const JsonReader& assets)
+{
+    for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
+        const ManifestAsset& asset = manifest.assets[i];
+        if (!asset.kind)
+            continue;
+        if (const auto head = readFileHead(asset.source, 0); !head)
+            assets.element(i).member("source").refuse("cannot be used: " + head.error().message);
+    }
+}
+
 } // namespace
 
-std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems)
+std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems,
+                                     ManifestSources sources)
 {
-    const auto bytes = readFile(file, kMaxManifestBytes);
+    const auto bytes = readInput(file, FileType::Manifest, kMaxManifestBytes);
     if (!bytes) { // its message names the file
         problems.push_back(bytes.error());
-        return std::nullopt;
-    }
-    if (const std::string other = otherKindText(*bytes, FileType::Manifest); !other.empty()) {
-        problems.push_back({fmt::format("{}: {}; assetc build reads a manifest, which lists assets "
-                                        "(docs/build_manifest.md)",
-                                        file.string(), other)});
         return std::nullopt;
     }
     const auto document =
@@ -185,11 +207,7 @@ std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProb
     Manifest manifest;
     manifest.file = file;
     root.refuseOthers({"version", "defaults", "assets"});
-    const std::size_t before = found.size();
-    const std::uint64_t version = root.count("version", std::numeric_limits<std::uint32_t>::max());
-    if (version != kManifestVersion && found.size() == before)
-        root.refuse(
-            fmt::format("has version {}, this program reads {}", version, kManifestVersion));
+    root.checkVersion(kManifestVersion);
     if (root.has("defaults"))
         checkDefaults(root.member("defaults"), (*document)["defaults"]);
     const nlohmann::json defaults = objectAt(*document, "defaults");
@@ -209,6 +227,8 @@ std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProb
         manifest.assets.push_back(std::move(asset));
     }
     refuseSharedFolders(manifest, assets, firstOf);
+    if (sources == ManifestSources::Checked || !found.empty())
+        refuseMissingSources(manifest, assets);
     for (const Error& problem : found)
         problems.push_back(fail(problem, file.string()));
     if (!found.empty())

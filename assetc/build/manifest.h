@@ -22,7 +22,13 @@ struct Manifest {
     std::vector<ManifestAsset> assets; // names differ
 };
 
-// The manifest, or at least one problem, each with its place.
-std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems);
+// Sources that are not there: problems beside others only (a build fails their assets alone), or
+// always.
+enum class ManifestSources { BesideProblems, Checked };
+
+// The manifest, or at least one problem, each with its place: all that can be told without reading
+// the sources.
+std::optional<Manifest> readManifest(const std::filesystem::path& file, JsonProblems& problems,
+                                     ManifestSources sources = ManifestSources::BesideProblems);
 
 } // namespace penumbra

@@ -1,37 +1,12 @@
 #include "assetc/commands/commands.h"
+#include "assetc/commands/output.h"
 #include "assetc/compile_scene.h"
-#include "assetc/overwrite.h"
 #include "assetc/report.h"
-#include "runtime/file.h"
+#include "assetc/words.h"
 
 #include <spdlog/spdlog.h>
 
 namespace penumbra {
-
-namespace {
-
-Result<void> writeScene(const BakeArguments& arguments, const CompiledScene& scene,
-                        const std::vector<AskedFile>& asked)
-{
-    std::vector<std::filesystem::path> outputs = {arguments.output / kSceneFile};
-    for (const SceneAsset& part : scene.assets)
-        outputs.push_back(arguments.output / part.file);
-    if (auto kept = refuseOverwrite(arguments.input, asked, outputs); !kept)
-        return kept;
-    for (const SceneAsset& part : scene.assets)
-        if (const auto written = writeFile(arguments.output / part.file,
-                                           std::span<const std::byte>(part.asset.bytes));
-            !written)
-            return written;
-    // Last: a scene names only what is there.
-    if (const auto written = writeFile(arguments.output / kSceneFile, scene.json); !written)
-        return written;
-    return arguments.report.empty()
-               ? Result<void>{}
-               : writeFile(arguments.report, sceneReport(arguments.input, scene));
-}
-
-} // namespace
 
 int runBakeScene(const BakeArguments& arguments)
 {
@@ -42,7 +17,8 @@ int runBakeScene(const BakeArguments& arguments)
         spdlog::error("{}: the output of --per-node is a folder", arguments.output.string());
         return kExitUsage;
     }
-    if (!checkReport(arguments.report, {arguments.input, arguments.output / kSceneFile}))
+    const std::filesystem::path sceneFile = arguments.output / kSceneFile;
+    if (!checkReport(arguments.report, {arguments.input, sceneFile}))
         return kExitUsage;
     std::vector<AskedFile> asked;
     const auto scene = [&] {
@@ -53,20 +29,28 @@ int runBakeScene(const BakeArguments& arguments)
         spdlog::error("{}", scene.error().message);
         return kExitInput;
     }
+    std::vector<std::filesystem::path> outputs = {sceneFile, arguments.report};
+    for (const SceneAsset& part : scene->assets)
+        outputs.push_back(arguments.output / part.file);
+    if (!checkOverwrite(arguments.input, asked, outputs))
+        return kExitUsage;
     for (const std::string& warning : scene->warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
-    for (const SceneAsset& part : scene->assets)
+    std::size_t bytes = 0;
+    for (const SceneAsset& part : scene->assets) {
         for (const std::string& warning : part.asset.report.warnings)
             spdlog::warn("{}: {}", part.file, warning);
-    if (const auto written = writeScene(arguments, *scene, asked); !written) {
-        spdlog::error("{}", written.error().message);
-        return kExitInput;
-    }
-    std::size_t bytes = 0;
-    for (const SceneAsset& part : scene->assets)
+        if (!writeOutput(arguments.output / part.file, part.asset.bytes))
+            return kExitInput;
+        fmt::print("{}", checksText(part.asset.report, part.file + ": "));
         bytes += part.asset.bytes.size();
-    fmt::print("{}: scene.json and {} assets of {} bytes\n", arguments.output.string(),
-               scene->assets.size(), bytes);
+    }
+    // Last: a scene names only what is there.
+    if (!writeOutput(sceneFile, std::as_bytes(std::span(scene->json))) ||
+        !writeReport(arguments.report, sceneReport(arguments.input, *scene)))
+        return kExitInput;
+    fmt::print("{}: scene.json and {} of {} bytes\n", arguments.output.string(),
+               counted(scene->assets.size(), "asset"), bytes);
     return kExitDone;
 }
 

@@ -3,7 +3,7 @@
 #include "assetc/build/build_progress.h"
 #include "assetc/build/build_report.h"
 #include "assetc/commands/commands.h"
-#include "runtime/file.h"
+#include "assetc/commands/output.h"
 
 #include <csignal>
 #include <spdlog/spdlog.h>
@@ -65,6 +65,14 @@ void say(const Manifest& manifest, const BuildArguments& arguments, const BuildO
             for (const std::string& warning : result.warnings)
                 spdlog::warn("{} \"{}\": {}", asset.place, asset.name, warning);
     }
+    constexpr std::size_t kMostShown = 5;
+    if (const std::vector<std::string>& stale = outcome.stale; !stale.empty())
+        spdlog::warn(
+            "{}: no asset of the manifest makes {}{}; delete what nothing uses",
+            arguments.output.string(),
+            fmt::join(stale.begin(), stale.begin() + std::min(stale.size(), kMostShown), ", "),
+            stale.size() > kMostShown ? fmt::format(" and {} more", stale.size() - kMostShown)
+                                      : "");
     fmt::print("{}\n", buildSummary(arguments.output, outcome));
     std::fflush(stdout); // --watch in a pipe: a reader waits for this line
 }
@@ -80,6 +88,8 @@ Round buildOnce(const BuildArguments& arguments, std::mutex& writing)
         round.exitCode = kExitInput;
         return round;
     }
+    if (manifest->assets.empty())
+        spdlog::warn("{}: lists no assets; add some to \"assets\"", arguments.manifest.string());
     BuildProgress progress;
     const auto outcome = buildAssets(*manifest, arguments.output, progress, writing);
     progress.clear();
@@ -91,15 +101,10 @@ Round buildOnce(const BuildArguments& arguments, std::mutex& writing)
     say(*manifest, arguments, *outcome);
     if (outcome->failed > 0)
         round.exitCode = kExitInput;
-    if (!arguments.report.empty()) {
-        const std::scoped_lock lock(writing);
-        if (const auto written =
-                writeFile(arguments.report, buildReport(*manifest, arguments.output, *outcome));
-            !written) {
-            spdlog::error("{}", written.error().message);
-            round.exitCode = kExitInput;
-        }
-    }
+    const std::string report = buildReport(*manifest, arguments.output, *outcome);
+    const std::scoped_lock lock(writing);
+    if (!writeReport(arguments.report, report))
+        round.exitCode = kExitInput;
     for (const AssetOutcome& asset : outcome->assets)
         round.files.insert(round.files.end(), asset.files.begin(), asset.files.end());
     return round;

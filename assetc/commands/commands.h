@@ -47,13 +47,4 @@ struct InspectArguments {
 int runInspect(const InspectArguments& arguments);
 int runValidate(const InspectArguments& arguments);
 
-// True where no report is asked for, or one that ends in .json and is none of `others`; otherwise
-// says so on stderr.
-bool checkReport(const std::filesystem::path& report,
-                 const std::vector<std::filesystem::path>& others);
-
-// True where `output` ends in `extension` and is not the input itself; otherwise says so on stderr.
-bool checkOutput(const std::filesystem::path& input, const std::filesystem::path& output,
-                 const char* extension);
-
 } // namespace penumbra

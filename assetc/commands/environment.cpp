@@ -1,7 +1,7 @@
 #include "assetc/environment.h"
 
 #include "assetc/commands/commands.h"
-#include "runtime/file.h"
+#include "assetc/commands/output.h"
 
 #include <spdlog/spdlog.h>
 
@@ -22,21 +22,12 @@ int runEnvironment(const EnvironmentArguments& arguments)
         spdlog::error("{}: {}", arguments.input.string(), bytes.error().message);
         return kExitInput;
     }
-    if (const auto written = writeFile(arguments.output, std::span<const std::byte>(*bytes));
-        !written) {
-        spdlog::error("{}", written.error().message);
-        return kExitInput;
-    }
-    if (!arguments.report.empty())
-        if (const auto written = writeFile(arguments.report, environmentReport(*environment));
-            !written) {
-            spdlog::error("{}", written.error().message);
-            return kExitInput;
-        }
     const EnvironmentStatistics& statistics = environment->statistics;
-    if (statistics.negative + statistics.absurd > 0)
-        spdlog::warn("{}: {} pixels with negative channels and {} absurd ones were clamped",
-                     arguments.input.string(), statistics.negative, statistics.absurd);
+    if (const std::string mended = mendedText(statistics); !mended.empty())
+        spdlog::warn("{}: {}", arguments.input.string(), mended);
+    if (!writeOutput(arguments.output, *bytes) ||
+        !writeReport(arguments.report, environmentReport(*environment)))
+        return kExitInput;
     fmt::print("{}: {}x{} from {}x{}, {} bytes\n", arguments.output.string(), environment->mapWidth,
                environment->mapHeight, statistics.sourceWidth, statistics.sourceHeight,
                bytes->size());

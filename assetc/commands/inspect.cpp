@@ -1,7 +1,7 @@
 #include "assetc/commands/commands.h"
+#include "assetc/commands/output.h"
 #include "assetc/inspection.h"
 #include "assetc/sheet/png.h"
-#include "runtime/file.h"
 
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
@@ -10,13 +10,21 @@ namespace penumbra {
 
 namespace {
 
-bool write(const std::filesystem::path& file, const auto& content)
+// What to draw in the place of a file that has no picture.
+const char* pictureRemedy(FileType type)
 {
-    if (const auto written = writeFile(file, content); !written) {
-        spdlog::error("{}", written.error().message);
-        return false;
+    switch (type) {
+    case FileType::MeshSource:
+    case FileType::EnvironmentSource:
+    case FileType::LightSpec:
+        return "; compile it first";
+    case FileType::Manifest:
+        return "; build it and name one of its outputs";
+    case FileType::Scene:
+        return "; name one of its parts, which lie beside it";
+    default:
+        return "";
     }
-    return true;
 }
 
 std::string validationReport(const std::filesystem::path& file, const Inspection& inspection)
@@ -44,14 +52,14 @@ int runInspect(const InspectArguments& arguments)
     }
     if (!sheet.empty()) {
         if (!inspection.sheet) {
-            spdlog::error("{}: {}; --png draws compiled assets only: compile it first",
-                          file.string(), inspection.what);
+            spdlog::error("{}: {}; --png draws compiled meshes, lights and environments{}",
+                          file.string(), inspection.what, pictureRemedy(inspection.type));
             return kExitInput;
         }
-        if (!write(sheet, std::span<const std::byte>(encodePng(*inspection.sheet))))
+        if (!writeOutput(sheet, encodePng(*inspection.sheet)))
             return kExitInput;
     }
-    if (!arguments.report.empty() && !write(arguments.report, inspection.json))
+    if (!writeReport(arguments.report, inspection.json))
         return kExitInput;
     fmt::print("{}", arguments.json ? inspection.json : inspection.text);
     if (!sheet.empty() && !arguments.json)
@@ -67,7 +75,7 @@ int runValidate(const InspectArguments& arguments)
     const Inspection inspection = inspectFile(file, false);
     const bool valid = inspection.problems.empty();
     const std::string report = validationReport(file, inspection);
-    if (!arguments.report.empty() && !write(arguments.report, report))
+    if (!writeReport(arguments.report, report))
         return kExitInput;
     if (arguments.json) {
         fmt::print("{}", report);

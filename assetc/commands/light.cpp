@@ -1,9 +1,8 @@
 #include "assetc/light.h"
 
 #include "assetc/commands/commands.h"
-#include "assetc/overwrite.h"
+#include "assetc/commands/output.h"
 #include "assetc/report.h"
-#include "runtime/file.h"
 
 #include <spdlog/spdlog.h>
 
@@ -23,26 +22,14 @@ int runLight(const LightArguments& arguments)
         spdlog::error("{}", light.error().message);
         return kExitInput;
     }
+    if (!checkOverwrite(arguments.input, asked, {arguments.output, arguments.report}))
+        return kExitUsage;
     for (const std::string& warning : light->asset.report.warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
-    if (const auto kept = refuseOverwrite(arguments.input, asked, {arguments.output}); !kept) {
-        spdlog::error("{}", kept.error().message);
-        return kExitUsage;
-    }
-    for (const AskedFile& file : asked)
-        if (!checkReport(arguments.report, {arguments.input.parent_path() / file.name}))
-            return kExitUsage;
     const std::span<const std::byte> bytes(light->asset.bytes);
-    if (const auto written = writeFile(arguments.output, bytes); !written) {
-        spdlog::error("{}", written.error().message);
+    if (!writeOutput(arguments.output, bytes) ||
+        !writeReport(arguments.report, lightReport(arguments.input, *light)))
         return kExitInput;
-    }
-    if (!arguments.report.empty())
-        if (const auto written = writeFile(arguments.report, lightReport(arguments.input, *light));
-            !written) {
-            spdlog::error("{}", written.error().message);
-            return kExitInput;
-        }
     double seconds = 0;
     for (const StageTime& time : light->asset.report.times)
         seconds += time.seconds;

@@ -3,15 +3,8 @@
 #include "assetc/import/gltf_material.h"
 #include "assetc/import/gltf_mesh.h"
 #include "assetc/import/gltf_nodes.h"
-#include "runtime/file.h"
 
 namespace penumbra {
-
-Result<ImportedMesh> importGltf(const std::filesystem::path& path, std::vector<AskedFile>* asked)
-{
-    const auto bytes = readFile(path, kMaxSourceBytes);
-    return bytes ? importGltfBytes(*bytes, path.parent_path(), asked) : bytes.error();
-}
 
 Result<ImportedMesh> importGltfBytes(std::span<const std::byte> bytes,
                                      const std::filesystem::path& folder,

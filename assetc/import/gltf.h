@@ -15,11 +15,7 @@ namespace penumbra {
 // pose that the file stores. Draco, quantised, sparse and interleaved attributes are read;
 // extensions that the file requires beyond these are refused by name. Instances
 // (EXT_mesh_gpu_instancing) are so many meshes. Materials, their PNG and JPEG images and lights
-// come along.
-Result<ImportedMesh> importGltf(const std::filesystem::path& path,
-                                std::vector<AskedFile>* asked = nullptr);
-
-// The same from the file's bytes; buffers that it names are looked for in `folder`.
+// come along. Buffers that the file names are looked for in `folder`.
 Result<ImportedMesh> importGltfBytes(std::span<const std::byte> bytes,
                                      const std::filesystem::path& folder,
                                      std::vector<AskedFile>* asked = nullptr);

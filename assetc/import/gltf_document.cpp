@@ -211,7 +211,8 @@ Result<GltfDocument> loadGltf(std::span<const std::byte> bytes, const std::files
     if (!parsed) {
         while (!error.empty() && error.back() == '\n')
             error.pop_back();
-        return Error{"not a readable glTF file: " + error.substr(0, 400)};
+        return Error{fmt::format("not a readable glTF file: {}; mend it or export it again",
+                                 error.substr(0, 400))};
     }
     if (const auto checked = checkModel(out.model); !checked)
         return checked.error();

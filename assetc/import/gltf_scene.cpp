@@ -3,7 +3,6 @@
 #include "assetc/import/gltf_material.h"
 #include "assetc/import/gltf_mesh.h"
 #include "assetc/import/gltf_nodes.h"
-#include "runtime/file.h"
 
 #include <algorithm>
 #include <map>
@@ -164,14 +163,12 @@ private:
 
 } // namespace
 
-Result<ImportedScene> importGltfScene(const std::filesystem::path& path,
+Result<ImportedScene> importGltfScene(std::span<const std::byte> bytes,
+                                      const std::filesystem::path& folder,
                                       std::vector<AskedFile>* asked)
 {
-    const auto bytes = readFile(path, kMaxSourceBytes);
-    if (!bytes)
-        return bytes.error();
     ImportedScene out;
-    const auto document = loadGltf(*bytes, path.parent_path(), out.warnings, asked);
+    const auto document = loadGltf(bytes, folder, out.warnings, asked);
     if (!document)
         return document.error();
     SceneImporter importer(*document, out);

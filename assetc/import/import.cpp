@@ -4,52 +4,46 @@
 #include "assetc/import/gltf.h"
 #include "assetc/import/gltf_scene.h"
 #include "assetc/import/obj.h"
-#include "runtime/file.h"
-
-#include <algorithm>
 
 namespace penumbra {
 
 namespace {
-
-std::string extensionOf(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 std::string nameOf(const std::filesystem::path& path)
 {
     return path.stem().string().substr(0, kMaxNameBytes);
 }
 
-Error unknownExtension(const std::string& extension)
+// Binary or text, which is an object; no line of OBJ begins so.
+bool isGltf(std::string_view text)
 {
-    return {fmt::format("extension \"{}\" is not one of .glb, .gltf, .obj", extension)};
+    const std::size_t begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    return text.starts_with("glTF") || (begin != std::string_view::npos && text[begin] == '{');
 }
 
-Result<ImportedMesh> meshByExtension(const std::filesystem::path& path,
-                                     std::vector<AskedFile>* asked)
+struct MeshSource {
+    std::vector<std::byte> bytes;
+    std::filesystem::path path, folder;
+    std::vector<AskedFile>* asked;
+
+    [[nodiscard]] std::string_view text() const
+    {
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+};
+
+Result<ImportedMesh> readMesh(const MeshSource& source)
 {
-    const std::string extension = extensionOf(path);
-    if (extension == ".glb" || extension == ".gltf")
-        return importGltf(path, asked);
-    if (extension == ".obj")
-        return importObj(path, asked);
-    return unknownExtension(extension);
+    return isGltf(source.text())
+               ? importGltfBytes(source.bytes, source.folder, source.asked)
+               : importObjText(std::string(source.text()), source.folder, source.asked);
 }
 
-Result<ImportedScene> sceneByExtension(const std::filesystem::path& path,
-                                       std::vector<AskedFile>* asked)
+Result<ImportedScene> readScene(const MeshSource& source)
 {
-    const std::string extension = extensionOf(path);
-    if (extension == ".glb" || extension == ".gltf")
-        return importGltfScene(path, asked);
-    if (extension != ".obj")
-        return unknownExtension(extension);
-    auto imported = importObj(path, asked);
+    if (isGltf(source.text()))
+        return importGltfScene(source.bytes, source.folder, source.asked);
+    auto imported = readMesh(source);
     if (!imported)
         return imported.error();
     ImportedScene scene;
@@ -57,34 +51,27 @@ Result<ImportedScene> sceneByExtension(const std::filesystem::path& path,
     scene.images = std::move(imported->mesh.images);
     scene.warnings = std::move(imported->warnings);
     scene.meshes = {std::move(imported->mesh)};
-    scene.meshes[0].name = nameOf(path);
-    scene.nodes = {{nameOf(path), -1, {}, 0}};
+    scene.meshes[0].name = nameOf(source.path);
+    scene.nodes = {{nameOf(source.path), -1, {}, 0}};
     return scene;
 }
 
-// With the path in front. A file of another format, whatever its name says, deserves to hear which.
-Error explain(const Error& error, const std::filesystem::path& path)
-{
-    if (const auto bytes = readFile(path, kMaxSourceBytes))
-        if (const std::string other = otherKindText(*bytes, FileType::MeshSource);
-            !other.empty() && !std::string_view(reinterpret_cast<const char*>(bytes->data()),
-                                                bytes->size())
-                                   .starts_with("glTF")) // a damaged one has a place to name
-            return {fmt::format("{}: {}", path.string(), other)};
-    return error.message.starts_with(path.string()) ? error : fail(error, path.string());
-}
-
 template <class Read>
-auto guarded(const std::filesystem::path& path, const Read& read) -> decltype(read(path))
+auto guarded(const std::filesystem::path& path, std::vector<AskedFile>* asked, const Read& read)
+    -> decltype(read(MeshSource{}))
 {
+    auto bytes = readInput(path, FileType::MeshSource, kMaxSourceBytes);
+    if (!bytes)
+        return bytes.error();
     try {
-        auto imported = read(path);
+        auto imported = read({std::move(*bytes), path, path.parent_path(), asked});
         if (imported)
             return imported;
-        return explain(imported.error(), path);
+        return fail(imported.error(), path.string());
     } catch (
         const std::exception& exception) { // tinygltf and tinyobjloader throw on some damaged input
-        return Error{fmt::format("{}: cannot be read: {}", path.string(), exception.what())};
+        return Error{fmt::format("{}: cannot be read: {}; export it again", path.string(),
+                                 exception.what())};
     }
 }
 
@@ -92,8 +79,7 @@ auto guarded(const std::filesystem::path& path, const Read& read) -> decltype(re
 
 Result<ImportedMesh> importMesh(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
-    auto imported = guarded(
-        path, [asked](const std::filesystem::path& file) { return meshByExtension(file, asked); });
+    auto imported = guarded(path, asked, readMesh);
     if (imported)
         imported->mesh.name = nameOf(path);
     return imported;
@@ -101,8 +87,7 @@ Result<ImportedMesh> importMesh(const std::filesystem::path& path, std::vector<A
 
 Result<ImportedScene> importScene(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
-    return guarded(
-        path, [asked](const std::filesystem::path& file) { return sceneByExtension(file, asked); });
+    return guarded(path, asked, readScene);
 }
 
 } // namespace penumbra

@@ -8,10 +8,10 @@
 
 namespace penumbra {
 
-// The format follows the extension. Any bytes give a mesh or an Error that names the place. The
-// mesh may have no triangles, degenerate ones and missing normals: assetc/import/clean.h comes
-// next. `asked` gets the other files that the file names (buffers, material libraries), of a file
-// that is refused too.
+// The format is told by the content (assetc/file_type.h). Any bytes give a mesh or an Error that
+// names the place. The mesh may have no triangles, degenerate ones and missing normals:
+// assetc/import/clean.h comes next. `asked` gets the other files that the file names (buffers,
+// material libraries), of a file that is refused too.
 Result<ImportedMesh> importMesh(const std::filesystem::path& path,
                                 std::vector<AskedFile>* asked = nullptr);
 

@@ -261,12 +261,6 @@ void addMaterials(const ObjFile& file, const std::filesystem::path& folder,
 
 } // namespace
 
-Result<ImportedMesh> importObj(const std::filesystem::path& path, std::vector<AskedFile>* asked)
-{
-    const auto text = readText(path, kMaxSourceBytes);
-    return text ? importObjText(*text, path.parent_path(), asked) : text.error();
-}
-
 Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
                                    std::vector<AskedFile>* asked)
 {

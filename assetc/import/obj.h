@@ -10,11 +10,7 @@ namespace penumbra {
 
 // All faces of the file, triangulated. Material libraries and the images of map_Kd are read only
 // from the file's own folder; of materials Kd, d and map_Kd count. An index that names nothing is
-// refused with its place.
-Result<ImportedMesh> importObj(const std::filesystem::path& path,
-                               std::vector<AskedFile>* asked = nullptr);
-
-// The same from the file's text; material libraries are looked for in `folder`.
+// refused with its place. Material libraries are looked for in `folder`.
 Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
                                    std::vector<AskedFile>* asked = nullptr);
 

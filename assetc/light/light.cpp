@@ -1,8 +1,8 @@
 #include "assetc/light.h"
 
 #include "assetc/field_errors.h"
-#include "assetc/import/import.h"
 #include "assetc/light/flat_emitter.h"
+#include "assetc/light/input.h"
 #include "assetc/light/light_field.h"
 #include "assetc/light/mesh_emitter.h"
 #include "assetc/light/shape_mesh.h"
@@ -32,9 +32,9 @@ Result<vec3> lambertianRadiance(const LightSpec& spec, double area)
     return radiance;
 }
 
-EmitterResult makeEmitter(const LightSpec& spec, const LightPicture* picture, const MeshAsset& mesh,
-                          std::uint32_t directions)
+EmitterResult makeEmitter(const LightInput& input, const MeshAsset& mesh, std::uint32_t directions)
 {
+    const LightSpec& spec = input.spec;
     if (spec.shape == EmitterShape::Sphere || spec.shape == EmitterShape::Mesh) {
         const bool sphere = spec.shape == EmitterShape::Sphere;
         const double area = sphere ? 4 * std::numbers::pi * spec.radius * spec.radius
@@ -47,7 +47,7 @@ EmitterResult makeEmitter(const LightSpec& spec, const LightPicture* picture, co
         return EmitterResult(std::make_unique<MeshEmitter>(
             mesh, *radiance, MeshEmitter::Options{spec.twoSided, directions}));
     }
-    auto emitter = FlatEmitter::make(spec, picture);
+    auto emitter = FlatEmitter::make(spec, input.texture ? &*input.texture : nullptr);
     if (!emitter)
         return emitter.error();
     return EmitterResult(std::make_unique<FlatEmitter>(std::move(*emitter)));
@@ -75,36 +75,6 @@ float cellAngle(std::uint32_t side)
     return 180.0f * std::numbers::sqrt2_v<float> / static_cast<float>(side - 1);
 }
 
-// The description and the mesh that people see, as it is before cleaning.
-Result<void> importLight(const std::filesystem::path& source, CompiledLight& light,
-                         std::vector<AskedFile>* asked)
-{
-    const auto spec = readLightSpec(source, asked);
-    if (!spec)
-        return spec.error();
-    light.spec = *spec;
-    MeshAsset& mesh = light.asset.mesh;
-    if (spec->shape == EmitterShape::Mesh) {
-        std::vector<AskedFile> byMesh; // beside the mesh
-        auto imported = importMesh(spec->mesh, &byMesh);
-        if (asked)
-            for (const AskedFile& file : byMesh) {
-                const auto beside = spec->mesh.parent_path() / file.name;
-                const auto folder = std::filesystem::weakly_canonical(
-                    std::filesystem::absolute(source).parent_path());
-                asked->push_back({beside.lexically_relative(folder).string(), file.found});
-            }
-        if (!imported)
-            return imported.error();
-        mesh = std::move(imported->mesh);
-        light.asset.report.warnings = std::move(imported->warnings);
-    } else {
-        mesh = makeShapeMesh(*spec);
-    }
-    mesh.name = source.stem().string().substr(0, kMaxNameBytes);
-    return {};
-}
-
 std::vector<SelfVisibility> bakeSelfVisibility(const LightSpec& spec, const MeshAsset& mesh,
                                                Progress& progress)
 {
@@ -124,40 +94,40 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
                                    Progress& progress, std::vector<AskedFile>* asked)
 {
     CompiledLight light;
-    const LightSpec& spec = light.spec;
+    LightSpec& spec = light.spec;
     const std::string place = source.string();
     MeshAsset& mesh = light.asset.mesh;
     CompileReport& report = light.asset.report;
     if (const auto fits = checkFieldBytes(options.shells, options.side, 3, place); !fits)
         return fits.error();
-    {
+    auto input = [&] {
         const StageTimer timer(report.times, "import");
-        if (const auto imported = importLight(source, light, asked); !imported)
-            return imported.error();
-    }
+        return readLightInput(source, asked);
+    }();
+    if (!input)
+        return input.error();
+    spec = input->spec;
+    // The mesh that people see, as it is before cleaning.
+    mesh = input->mesh ? std::move(input->mesh->mesh) : makeShapeMesh(spec);
+    mesh.name = source.stem().string().substr(0, kMaxNameBytes);
+    if (input->mesh)
+        report.warnings = std::move(input->mesh->warnings);
     if (spec.shape == EmitterShape::Spot &&
         spec.outerAngle - spec.innerAngle < cellAngle(options.side))
         report.warnings.push_back(fmt::format(
             "the falloff of {:.1f} degrees is narrower than a cell of the field, {:.1f} "
             "degrees; raise --max-side",
             spec.outerAngle - spec.innerAngle, cellAngle(options.side)));
-    std::optional<LightPicture> picture;
-    if (!spec.texture.empty()) {
-        auto read = readLightPicture(spec.texture);
-        if (!read)
-            return fail(read.error(), place);
-        picture = std::move(*read);
-    }
-    const LightPicture* const shown = picture ? &*picture : nullptr;
-    const float white = paintLight(mesh, spec, shown);
-    if (const auto prepared = prepareMesh(light.asset, place, options.encode); !prepared)
+    const float white = paintLight(mesh, spec, input->texture ? &*input->texture : nullptr);
+    const std::string meshPlace = input->mesh ? place + ": light.source" : place;
+    if (const auto prepared = prepareMesh(light.asset, meshPlace, options.encode); !prepared)
         return prepared.error();
     {
         const StageTimer timer(report.times, "self-visibility");
         mesh.selfVisibility = bakeSelfVisibility(spec, mesh, progress);
     }
 
-    const auto emitter = makeEmitter(spec, shown, mesh, options.directions);
+    const auto emitter = makeEmitter(*input, mesh, options.directions);
     if (!emitter)
         return fail(emitter.error(), place);
     light.power = (*emitter)->power();

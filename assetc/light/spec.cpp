@@ -4,7 +4,6 @@
 #include "assetc/import/folder.h"
 #include "assets/json_reader.h"
 #include "runtime/assert.h"
-#include "runtime/file.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -14,7 +13,6 @@ namespace penumbra {
 namespace {
 
 constexpr std::uint64_t kMaxSpecBytes = 64 << 10;
-constexpr std::uint64_t kMaxReadBytes = 1u << 30; // of a wrong file, to say what it is
 constexpr float kMaxEmission = 1e12f; // of power and intensity; their radiance is checked later
 
 struct ShapeMembers {
@@ -42,7 +40,8 @@ const ShapeMembers* findShape(const JsonReader& root)
         if (type == shape.type)
             return &shape;
     if (root.has("type"))
-        root.member("type").refuse("is not one of sphere, rectangle, disc, spot, mesh");
+        root.member("type").refuse(fmt::format(
+            "is {}, not one of sphere, rectangle, disc, spot, mesh", root.member("type").quoted()));
     return nullptr;
 }
 
@@ -60,8 +59,8 @@ void refuseUnknown(const nlohmann::json& document, const ShapeMembers& shape,
 vec3 color(const JsonReader& reader, float max)
 {
     vec3 result{0};
-    if (reader.length(3) != 3)
-        reader.refuse("is not three numbers [r, g, b]");
+    if (!reader.isArrayOf(3))
+        reader.refuse(fmt::format("is {}, not three numbers [r, g, b]", reader.quoted()));
     else
         for (int i = 0; i < 3; ++i)
             result[i] = reader.element(static_cast<std::size_t>(i)).asNumber(0, max);
@@ -88,7 +87,9 @@ void readEmission(const JsonReader& root, LightSpec& spec)
             root.member(u.key).refuse("is black; a light emits something");
     }
     if (given != 1)
-        root.refuse("needs exactly one of \"radiance\", \"power\" and, for a spot, \"intensity\"");
+        root.refuse(fmt::format("has {} of \"radiance\", \"power\" and, for a spot, "
+                                "\"intensity\"; it needs exactly one",
+                                given));
 }
 
 float length(const JsonReader& reader)
@@ -105,10 +106,14 @@ void readShape(const JsonReader& root, LightSpec& spec)
         break;
     case EmitterShape::Rectangle: {
         const JsonReader size = root.member("size");
-        spec.size = vec2(length(size.element(0)), length(size.element(1)));
-        if (size.length(2) == 2 &&
+        if (size.isArrayOf(2))
+            spec.size = vec2(length(size.element(0)), length(size.element(1)));
+        else
+            size.refuse(fmt::format("is {}, not two lengths [width, height]", size.quoted()));
+        if (size.isArrayOf(2) &&
             std::max(spec.size.x, spec.size.y) > 1000 * std::min(spec.size.x, spec.size.y))
-            size.refuse("is more than 1000 times as long as wide");
+            size.refuse(fmt::format("is {} by {}, more than 1000 times as long as wide",
+                                    spec.size.x, spec.size.y));
         break;
     }
     case EmitterShape::Spot:
@@ -117,7 +122,8 @@ void readShape(const JsonReader& root, LightSpec& spec)
         spec.innerAngle = root.number("innerAngle", 0, kMaxOuterAngle);
         if (spec.innerAngle > spec.outerAngle - kMinFalloffAngle)
             root.member("innerAngle")
-                .refuse(fmt::format("is not {} degrees below outerAngle", kMinFalloffAngle));
+                .refuse(fmt::format("is {}, not {} degrees below the outerAngle of {}",
+                                    spec.innerAngle, kMinFalloffAngle, spec.outerAngle));
         break;
     case EmitterShape::Mesh:
         break;
@@ -160,13 +166,9 @@ const char* unitName(EmissionUnit unit)
 
 Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<AskedFile>* asked)
 {
-    const auto bytes = readFile(path, kMaxReadBytes);
+    const auto bytes = readInput(path, FileType::LightSpec, kMaxSpecBytes);
     if (!bytes)
         return bytes.error();
-    if (const std::string other = otherKindText(*bytes, FileType::LightSpec); !other.empty())
-        return Error{fmt::format("{}: {}; assetc light reads a light description "
-                                 "(docs/light_spec.md)",
-                                 path.string(), other)};
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     const auto document = parseJson(text, kMaxSpecBytes);
     if (!document)
@@ -174,24 +176,18 @@ Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<A
 
     JsonProblems problems;
     const JsonReader root(*document, path.string() + ": light", problems);
-    if (root.count("version", 1u << 30) != 1 && problems.empty())
-        root.member("version").refuse("is not 1, the only version that this program reads");
+    root.checkVersion(1);
     LightSpec spec;
     if (const ShapeMembers* shape = findShape(root)) {
         refuseUnknown(*document, *shape, root);
         spec.shape = shape->shape;
         readShape(root, spec);
         readEmission(root, spec);
-        if (document->contains("reach"))
+        if (root.has("reach"))
             spec.reach = root.number("reach", kMinEmitterSize, 1000 * kMaxEmitterSize);
-        if (document->contains("twoSided")) {
-            const nlohmann::json& value = (*document)["twoSided"];
-            if (!value.is_boolean())
-                root.member("twoSided").refuse("is not true or false");
-            else
-                spec.twoSided = value.get<bool>();
-        }
-        if (document->contains("texture"))
+        if (root.has("twoSided"))
+            spec.twoSided = root.flag("twoSided");
+        if (root.has("texture"))
             spec.texture = confined(root.member("texture"), path.parent_path(), asked);
         if (spec.shape == EmitterShape::Mesh)
             spec.mesh = confined(root.member("source"), path.parent_path(), asked);

@@ -169,4 +169,17 @@ Canvas drawMeshSheet(const MeshAsset& mesh, std::size_t bytes)
     return sheet;
 }
 
+std::string meshSheetText(const MeshAsset& mesh)
+{
+    std::string text = "the mesh with its self-visibility";
+    if (!mesh.field)
+        return text;
+    const bool occlusion = mesh.field->kind == FieldKind::Occlusion;
+    text += "; some shells of the field as octahedral maps, a square per node (";
+    text += occlusion ? "grey: mean visibility v as 1 - sqrt(1 - v)"
+                      : "colour: radiance over the shell's brightest";
+    text += "); the side of every shell, inner one left, no bar where left out";
+    return occlusion ? text + "; rms error of every shell against traced rays" : text;
+}
+
 } // namespace penumbra

@@ -1,7 +1,10 @@
 // `assetc build`: what is compiled again, and what is not.
 #include "assets/environment.h"
+#include "assets/glb.h"
 #include "assets/mesh_codec.h"
 #include "tests/assetc/build_fixture.h"
+
+#include <algorithm>
 
 namespace penumbra {
 
@@ -178,19 +181,19 @@ TEST_F(BuildTest, WrongManifestsWriteNothing)
                std::string(static_cast<std::size_t>(depth), ']');
     };
     const std::vector<std::pair<std::string, std::string>> cases = {
-        {"", "not valid JSON"},
+        {"", "an empty file"},
         {"[]", "root is not an object"},
         {"{\n \"version\": 1,\n \"assets\": [}", "line 3, column 13"},
         {"{\"a\":" + nested(60000) + "}", "nested deeper"},
         {R"({"assets":[]})", "has no \"version\""},
-        {R"({"version":2,"assets":[]})", "version 2"},
+        {R"({"version":2,"assets":[]})", "version is 2, this program reads 1"},
         {R"({"version":1})", "has no \"assets\""},
-        {R"({"version":1,"assets":{}})", "assets is not an array"},
+        {R"({"version":1,"assets":{}})", "assets is an object, not an array"},
         {R"({"version":1,"assets":[],"more":1})", "no member \"more\""},
         {R"({"version":1,"assets":[],"defaults":{"bread":{}}})",
          "defaults has no member \"bread\""},
         {R"({"version":1,"assets":[],"defaults":{"mesh":{"shells":1}}})", "defaults.mesh.shells"},
-        {R"({"version":1,"assets":[7]})", "assets[0] is not an object"},
+        {R"({"version":1,"assets":[7]})", "assets[0] is 7, not an object"},
         {R"({"version":1,"assets":[{"source":"m0.obj"}]})", "assets[0] has no \"name\""},
         {R"({"version":1,"assets":[{"name":"a"}]})", "assets[0] has no \"source\""},
         {R"({"version":1,"assets":[)" + a + "}," + a + "}]}", "assets[1].name"},
@@ -327,6 +330,57 @@ TEST_F(BuildTest, ScenesAreFoldersOfParts)
     EXPECT_EQ(build()["stale"], nlohmann::json::array({"a/room/right.glb"}));
     EXPECT_EQ(build()["stale"], nlohmann::json::array({"a/room/right.glb"}));
     EXPECT_TRUE(std::filesystem::exists(folder / "built/a/room/right.glb"));
+
+    manifest["assets"] = nlohmann::json::array(); // of the parts that were recorded last
+    writeManifest();
+    EXPECT_EQ(build()["stale"],
+              nlohmann::json::array({"a/room/east.glb", "a/room/left.glb", "a/room/scene.json"}));
+    EXPECT_NE(outcome.err.find("no asset of the manifest makes a/room/east.glb, a/room/left.glb, "
+                               "a/room/scene.json; delete what nothing uses"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("lists no assets"), std::string::npos) << outcome.err;
+}
+
+TEST_F(BuildTest, EveryProblemOfAManifestIsListedAtOnce)
+{
+    folder.write("m.obj", pyramid(1));
+    folder.write("scene.fbx", "Kaydara FBX Binary  ....");
+    folder.write("plain.txt", pyramid(1));
+    std::filesystem::create_directory(folder / "dir");
+    manifest["assets"] = {{{"name", "a"}, {"source", "scene.fbx"}},
+                          {{"name", "b"}, {"source", "none.obj"}},
+                          {{"name", "c"}, {"source", "dir"}},
+                          {{"name", "d"}, {"source", "dir"}, {"kind", "mesh"}},
+                          {{"name", "e"}, {"source", "plain.txt"}},
+                          {{"name", "f"}, {"source", "m.obj"}, {"options", {{"shells", 1}}}},
+                          {{"name", "g"}, {"source", "m.obj"}}};
+    writeManifest();
+    build(1);
+    for (const char* says :
+         {"assets[0].source is an FBX scene; export it as glTF",
+          "assets[1].source cannot be used: ", "none.obj: cannot open: No such file",
+          "assets[2].source cannot be used: ", "dir: a folder; name a file in it",
+          "assets[3].source cannot be used: ",
+          "assets[4].source is \"plain.txt\", whose ending is none of .glb, .gltf, .obj",
+          "assets[5].options.shells is 1, not a whole number from 2 to 128"})
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << says << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.find("rename"), std::string::npos) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 6) << outcome.err;
+
+    // Alone, a missing source fails its asset only; for validate it is a problem.
+    manifest["assets"] = {{{"name", "b"}, {"source", "none.obj"}},
+                          {{"name", "g"}, {"source", "m.obj"}}};
+    manifest["source"] = "m.obj"; // does not make it a report
+    writeManifest();
+    build(1);
+    EXPECT_NE(outcome.err.find("has no member \"source\""), std::string::npos) << outcome.err;
+    manifest.erase("source");
+    writeManifest();
+    EXPECT_EQ(named(build(1), "built"), Names({"g"}));
+    outcome = runProgram(PENUMBRA_ASSETC, "validate '" + at("manifest.json") + "'", folder);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.out.find("assets[0].source cannot be used"), std::string::npos);
 }
 
 TEST_F(BuildTest, AFolderOfPartsIsTheScenesOwn)
@@ -353,13 +407,8 @@ TEST_F(BuildTest, AFolderOfPartsIsTheScenesOwn)
 
 TEST_F(BuildTest, ALightDoesNotReplaceTheMeshThatItNames)
 {
-    folder.write("art/square.gltf", squareGltf().dump());
-    ASSERT_EQ(runProgram(PENUMBRA_ASSETC,
-                         fmt::format("bake '{}' -o '{}' --no-field", at("art/square.gltf"),
-                                     at("art/lamp.glb")),
-                         folder)
-                  .code,
-              0);
+    const auto glb = *writeGlb(squareGltf().dump(), {});
+    ASSERT_TRUE(writeFile(folder / "art/lamp.glb", std::span<const std::byte>(glb)));
     const std::string mesh = readText(folder / "art/lamp.glb");
     folder.write("art/lamp.json",
                  R"({"version":1,"type":"mesh","source":"lamp.glb","radiance":[1,1,1]})");

@@ -191,10 +191,10 @@ TEST_F(CommandLine, WrongKindsOfFileAreNamed)
           {"bake " + at("lamp.json") + " -o " + at("o.glb"),
            "a light description; compile it with assetc light"},
           {"build " + at("cut.glb") + " -o " + at("o"),
-           "a damaged binary glTF file; assetc build reads a manifest"},
+           "an unreadable binary glTF file: 8 bytes: cut in its header"},
           {"build " + at("lamp.json") + " -o " + at("o"), "compile it with assetc light"},
           {"light " + at("a.obj") + " -o " + at("o.glb"),
-           "a Wavefront OBJ mesh; compile it with assetc bake; assetc light reads"},
+           "a Wavefront OBJ mesh; compile it with assetc bake"},
           {"bake " + at("dust.obj") + " -o " + at("o.glb"), "scale it, its unit is the metre"},
           {"environment " + at("a.obj") + " -o " + at("o.env"),
            "a Wavefront OBJ mesh; compile it with assetc bake"}}) {
@@ -258,9 +258,9 @@ TEST_F(CommandLine, ValidateChecksLightsAndScenesAsTheirReadersDo)
     const std::string place = R"("Transform":{"position":[0,0,0],"rotation":[0,0,0,1],"scale":1})";
     const std::string start = R"({"version":1,"entities":[)";
     for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
-             {R"({"version":1,"type":"sphere","radius":1})", "needs exactly one of"},
-             {R"({"version":1,"type":"cone","power":[1,1,1]})", "is not one of sphere"},
-             {R"({"version":1,"entities":{}})", "entities is not an array"},
+             {R"({"version":1,"type":"sphere","radius":1})", "it needs exactly one"},
+             {R"({"version":1,"type":"cone","power":[1,1,1]})", "is \"cone\", not one of sphere"},
+             {R"({"version":1,"entities":{}})", "entities is an object, not an array"},
              {start + R"({"Name":{"value":"a"}}]})", "entities[0] has no \"Transform\""},
              {start + "{" + place + R"(,"Parent":{"entity":0}}]})", "is no earlier entity"},
              {start + "{" + place + R"(,"MeshInstance":{"asset":"a.glb"}}]})",
@@ -273,7 +273,7 @@ TEST_F(CommandLine, ValidateChecksLightsAndScenesAsTheirReadersDo)
               "rotation"},
              {start + "{" + place + R"(}],"lights":[{"entity":1,"type":"point","intensity":1}]})",
               "lights[0].entity is none of the 1 entities"},
-             {R"({"version":2,"entities":[]})", "version is not 1"}}) {
+             {R"({"version":2,"entities":[]})", "version is 2, this program reads 1"}}) {
         folder.write("x.json", text);
         const Outcome outcome = run("validate " + at("x.json") + " --report " + at("r.json"));
         EXPECT_EQ(outcome.code, 1) << text;

@@ -429,4 +429,31 @@ TEST_F(Light, NoiseOfRaysIsInTheErrors)
     EXPECT_LT(many, 0.5f * few);
 }
 
+// A light's errors are parts of its own brightness, whatever that is: 2^-70 scales without
+// rounding.
+TEST_F(Light, ErrorsDoNotDependOnTheUnit)
+{
+    LightOptions options;
+    options.shells = 16;
+    options.side = 33;
+    const std::string start = R"({"version":1,"type":"disc","radius":1,"radiance":)";
+    const CompiledLight one = compile(start + "[1,0.5,0.25]}", options);
+    const CompiledLight faint = compile(
+        start + "[8.470329472543003e-22,4.2351647362715017e-22,2.1175823681357508e-22]}", options);
+    const FieldErrors a = *one.asset.mesh.field->errors, b = *faint.asset.mesh.field->errors;
+    EXPECT_GT(a.total.rms, 1e-4f);
+    for (const auto& [left, right] : {std::pair{a.total, b.total},
+                                      {a.angular, b.angular},
+                                      {a.radial, b.radial},
+                                      {a.quantisation, b.quantisation}}) {
+        EXPECT_NEAR(left.rms, right.rms, 1e-3f * left.rms);
+        EXPECT_NEAR(left.max, right.max, 1e-3f * left.max);
+    }
+    // As is what adaptation reports, which stays below its threshold.
+    ASSERT_TRUE(one.asset.report.adapt && faint.asset.report.adapt);
+    EXPECT_GT(one.asset.report.adapt->worst, 0);
+    EXPECT_LT(one.asset.report.adapt->worst, options.adaptThreshold);
+    EXPECT_NEAR(one.asset.report.adapt->worst, faint.asset.report.adapt->worst, 1e-5f);
+}
+
 } // namespace penumbra

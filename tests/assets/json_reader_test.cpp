@@ -39,7 +39,7 @@ TEST(JsonReader, ProblemsNameTheirPlacesOnce)
     EXPECT_EQ(root.member("a").element(0).count("b", 10), 0u);
     EXPECT_EQ(root.member("zzz").element(3).number("q", 0, 1), 0.0f);
     ASSERT_EQ(problems.size(), 2u);
-    EXPECT_EQ(problems[0].message, "file.a[0].b is not a whole number from 0 to 10");
+    EXPECT_EQ(problems[0].message, "file.a[0].b is -1, not a whole number from 0 to 10");
     EXPECT_EQ(problems[1].message, "file has no \"zzz\"");
 }
 
@@ -87,10 +87,39 @@ TEST(JsonReader, FlagsAndUnknownMembers)
     root.member("list").refuseOthers({});
     EXPECT_EQ(root.member("b").asText(), "");
     ASSERT_EQ(problems.size(), 4u);
-    EXPECT_EQ(problems[0].message, "a.off is not true or false");
+    EXPECT_EQ(problems[0].message, "a.off is 0, not true or false");
     EXPECT_EQ(problems[1].message, "a has no member \"zzz\"; known: on, off");
-    EXPECT_EQ(problems[2].message, "list is not an object");
+    EXPECT_EQ(problems[2].message, "list is an array of 0, not an object");
     EXPECT_EQ(problems[3].message, "has no \"b\"");
+}
+
+// What is quoted is short and cannot command a terminal.
+TEST(JsonReader, ValuesAreQuotedSafely)
+{
+    const auto document = parseJson("{\"long\":\"" + std::string(500, 'x') +
+                                        "\",\"escape\":\"\\u001b[2J\",\"list\":[1,2]}",
+                                    10000);
+    ASSERT_TRUE(document);
+    JsonProblems problems;
+    const JsonReader root(*document, "", problems);
+    EXPECT_LE(root.member("long").quoted().size(), 42u);
+    EXPECT_EQ(root.member("escape").quoted(), "\"\\u001b[2J\"");
+    EXPECT_EQ(root.member("list").quoted(), "an array of 2");
+    EXPECT_TRUE(problems.empty());
+}
+
+TEST(JsonReader, VersionsOfFilesThatPeopleWrite)
+{
+    for (const auto& [text, says] :
+         {std::pair{"{}", "has no \"version\"; add \"version\": 1"},
+          {R"({"version":2})", "version is 2, this program reads 1"},
+          {R"({"version":"1"})", "version is \"1\", this program reads 1"}}) {
+        const auto document = parseJson(text, 100);
+        JsonProblems problems;
+        JsonReader(*document, "", problems).checkVersion(1);
+        ASSERT_EQ(problems.size(), 1u) << text;
+        EXPECT_EQ(problems[0].message, says);
+    }
 }
 
 } // namespace penumbra
