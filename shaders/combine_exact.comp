@@ -2,7 +2,8 @@
 // combine_exact: one workgroup per visible cluster, kReceivers receivers per invocation.
 //   T = transfer of the receiver, its values at the 32 nodes          (shaders/shared/transfer.h)
 //   occluder:    T = O * T, node by node                              (triple product)
-//   local light: B += integral of S T', where T' is T with the occluders that stand before the light (double product)
+//   local light: B += integral of S T', where T' is T with the occluders that stand before the light (double product),
+//                corrected as shaders/shared/emitter.h says
 //   environment: B += sum over nodes of weight * L * T, after the last occluder
 // Source: Zhou et al. 2005, Fig. 5; the fast way is findings section 1, kernel J.
 // Differs: products at quadrature nodes instead of tripling coefficients, so a chain keeps more than order 4 and is
@@ -12,6 +13,7 @@
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
+#include "shaders/shared/emitter.h"
 #include "shaders/shared/order.h"
 #include "shaders/shared/visibility.h"
 
@@ -44,15 +46,18 @@ ShNodal occlusion(FieldEntity entity, vec3 position, float weight)
 }
 
 // The double product, in the light's frame: one rotation for three channels.
-vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position)
+vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position, vec3 normal)
 {
     FieldCell cell;
     const FieldTetrahedron t = tetrahedronAt(light, position, cell);
-    const Sh4 local = fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)),
-                                     light.bandScale * (cell.decay * (1.0 / 256.0)));
+    const vec4 scale = light.bandScale * (cell.decay * (1.0 / 256.0));
     const uint channel = light.grid.side * light.grid.side * light.grid.shells;
-    return vec3(shDot(local, sampleField(cell.sample0, t)), shDot(local, sampleField(cell.sample0 + channel, t)),
-                shDot(local, sampleField(cell.sample0 + 2u * channel, t)));
+    const Sh4 r = sampleField(cell.sample0, t), g = sampleField(cell.sample0 + channel, t);
+    const Sh4 b = sampleField(cell.sample0 + 2u * channel, t);
+    const Sh4 all = fieldDeviation(shAdd(shAdd(r, g), b), scale);
+    const Sh4 local = fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)), scale);
+    const float correction = irradianceCorrection(all, normalize(light.radiiFromWorld * normal));
+    return correction * max(vec3(shDot(local, r), shDot(local, g), shDot(local, b)), vec3(0.0));
 }
 
 uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kListStride + at)).x; }
@@ -79,7 +84,8 @@ vec3 localLight(GpuInstance light, uint possible, uint v)
         const float weight = orderWeight(occluder.sphere, light.sphere, position[v]) * risen(occluder.sphere, v);
         through = shMultiply(through, occlusion(instanceField(occluder), position[v], weight));
     }
-    return risen(light.sphere, v) * light.material.rgb * lightThrough(through, instanceField(light), position[v]);
+    return risen(light.sphere, v) * light.material.rgb *
+           lightThrough(through, instanceField(light), position[v], normal[v]);
 }
 
 void main()

@@ -87,6 +87,13 @@ PENUMBRA_FN float shDot(Sh4 a, Sh4 b)
     return sum;
 }
 
+PENUMBRA_FN Sh4 shAdd(Sh4 a, Sh4 b)
+{
+    for (int i = 0; i < 16; ++i)
+        a.c[i] += b.c[i];
+    return a;
+}
+
 PENUMBRA_FN ShNodal shMultiply(ShNodal a, ShNodal b)
 {
     ShNodal p;

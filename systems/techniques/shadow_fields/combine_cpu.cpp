@@ -1,5 +1,6 @@
 #include "systems/techniques/shadow_fields/combine_cpu.h"
 
+#include "shaders/shared/emitter.h"
 #include "shaders/shared/order.h"
 #include "shaders/shared/visibility.h"
 
@@ -109,16 +110,21 @@ struct ExactProduct {
         const FieldGrid& grid = light.grid;
         const FieldCell cell = fieldCell(fieldPoint(light, position), grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, grid);
+        const vec4 scale = light.bandScale * (cell.decay * (1.0f / 256.0f));
         const Sh4 local =
-            fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)),
-                           light.bandScale * (cell.decay * (1.0f / 256.0f)));
+            fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)), scale);
+        Sh4 all{};
         vec3 b(0);
-        for (uint channel = 0; channel < 3; ++channel)
-            b[static_cast<int>(channel)] = shDot(
-                local, sampleTetrahedral(
-                           scene.fieldSamples,
-                           cell.sample0 + channel * grid.side * grid.side * grid.shells, t));
-        return b;
+        for (uint channel = 0; channel < 3; ++channel) {
+            const Sh4 steps =
+                sampleTetrahedral(scene.fieldSamples,
+                                  cell.sample0 + channel * grid.side * grid.side * grid.shells, t);
+            all = shAdd(all, steps);
+            b[static_cast<int>(channel)] = shDot(local, steps);
+        }
+        const float correction = irradianceCorrection(fieldDeviation(all, scale),
+                                                      normalize(light.radiiFromWorld * normal));
+        return correction * max(b, vec3(0));
     }
 };
 
