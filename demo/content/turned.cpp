@@ -27,8 +27,8 @@ ContentMesh makeChessPawn()
 
 ContentMesh makeBall()
 {
-    constexpr float kRadius = 0.1f;
-    Profile p({0, -kRadius}, 0.0082f);
+    constexpr float kRadius = 0.18f;
+    Profile p({0, -kRadius}, 0.015f);
     p.arcTo({0, 0}, {kRadius, 0}).arcTo({0, 0}, {0, kRadius});
     MeshBuilder builder;
     builder.addSkin(latheRings(p.points(), 48), false);

@@ -109,10 +109,10 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
     constexpr float kHalfTurn = glm::pi<float>();
     Result<void> done = placeObjects(*scene, options);
     if (done)
-        done = addLight(*scene, options, "ball_lamp", "ball", vec3(30, 13, 5),
+        done = addLight(*scene, options, "ball_lamp", "ball", vec3(10, 4.5f, 1.8f),
                         {.center = vec3(0, 0.62f, 0), .radius = 1.15f, .speed = 0.7f, .bob = 0.2f});
     if (done)
-        done = addLight(*scene, options, "ball_lamp", "ball", vec3(5, 12, 30),
+        done = addLight(*scene, options, "ball_lamp", "ball", vec3(1.8f, 4.2f, 10),
                         {.center = vec3(0, 0.80f, 0),
                          .radius = 0.55f,
                          .speed = -0.9f,
@@ -123,7 +123,7 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
                         {.center = vec3(0, 0.75f, 0),
                          .radius = 1.7f,
                          .speed = 0.12f,
-                         .phase = 0.75f * kHalfTurn,
+                         .phase = 1.31f * kHalfTurn, // its back to the camera at first
                          .aim = 1});
     if (!done)
         return done.error();
