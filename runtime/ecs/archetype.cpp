@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace penumbra::ecs {
 
@@ -56,16 +57,16 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
         const uint32_t laneBytes = info.bytes / info.laneCount;
         for (uint32_t lane = 0; lane < info.laneCount; ++lane, prefix += laneBytes)
             m_columns.push_back(
-                {id, static_cast<uint16_t>(lane), laneBytes, prefix, 0, -1, info.life});
+                {id, static_cast<uint16_t>(lane), laneBytes, prefix, -1, info.life});
         m_hasLife = m_hasLife || info.life != nullptr;
         if (info.rowChanges) {
             m_columns[m_columnOf[id]].rowChanges = static_cast<int32_t>(m_rowChanges.size());
             m_rowChanges.emplace_back(segmentRows());
         }
     }
+    m_columnCount = static_cast<uint16_t>(m_columns.size());
     m_columnVersions.resize(m_columns.size());
-    m_blockShift = std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift);
-    m_blockBytes = layOutColumns(m_columns, m_blockShift);
+    setBlockShift(std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift));
 }
 
 Archetype::~Archetype()
@@ -76,13 +77,39 @@ Archetype::~Archetype()
         freeBlock(block);
 }
 
-// The columns' offsets in a block of 2^blockShift rows. Returns the block's bytes.
-size_t Archetype::layOutColumns(std::vector<Column>& columns, uint32_t blockShift) const
+// Bytes between the columns of a block of 2^shift rows: small blocks stay small.
+uint32_t Archetype::columnGapAt(uint32_t shift) const
 {
-    const uint32_t gap = blockShift >= m_segmentShift ? kColumnGap : 0; // small blocks stay small
-    for (uint32_t i = 0; i < columns.size(); ++i)
-        columns[i].offset = (columns[i].prefix << blockShift) + i * gap;
-    return (size_t{m_rowBytes} << blockShift) + columns.size() * gap;
+    return shift >= m_segmentShift ? kColumnGap : 0;
+}
+
+size_t Archetype::blockBytesAt(uint32_t shift) const
+{
+    return (size_t{m_rowBytes} << shift) + m_columns.size() * columnGapAt(shift);
+}
+
+void Archetype::setBlockShift(uint32_t shift)
+{
+    m_blockShift = shift;
+    m_blockMask = (1u << shift) - 1;
+    m_blockBytes = blockBytesAt(shift);
+}
+
+void Archetype::setColumnsAt(size_t block)
+{
+    const size_t gap = columnGapAt(m_blockShift);
+    for (size_t i = 0; i < m_columns.size(); ++i)
+        m_columnsAt[block * m_columns.size() + i] =
+            m_blocks[block] + (size_t{m_columns[i].prefix} << m_blockShift) + i * gap;
+}
+
+void Archetype::addBlock()
+{
+    reserveSparingly(m_blocks, m_blocks.size() + 1);
+    reserveSparingly(m_columnsAt, (m_blocks.size() + 1) * m_columns.size());
+    m_blocks.push_back(allocateBlock(m_blockBytes));
+    m_columnsAt.resize(m_blocks.size() * m_columns.size());
+    setColumnsAt(m_blocks.size() - 1);
 }
 
 void Archetype::growFirstBlock()
@@ -91,25 +118,19 @@ void Archetype::growFirstBlock()
     const uint32_t blockShift = m_blockShift < m_segmentShift
                                     ? std::min(m_blockShift + 2, m_segmentShift)
                                     : m_segmentShift + kBlockSegmentShift;
-    std::vector<Column> columns = m_columns;
-    const size_t bytes = layOutColumns(columns, blockShift);
-    if (!m_blocks.empty()) {
-        std::byte* const block = allocateBlock(bytes);
-        const uint32_t rows = count();
-        for (size_t i = 0; i < columns.size(); ++i) {
-            std::byte* const to = block + columns[i].offset;
-            std::byte* const from = m_blocks[0] + m_columns[i].offset;
-            if (columns[i].life != nullptr)
-                columns[i].life->relocate(to, from, rows);
-            else
-                std::memcpy(to, from, size_t{rows} * columns[i].bytes);
-        }
-        freeBlock(m_blocks[0]);
-        m_blocks[0] = block;
+    if (m_blocks.empty())
+        return setBlockShift(blockShift);
+    const std::vector<std::byte*> from = m_columnsAt;
+    std::byte* const old = std::exchange(m_blocks[0], allocateBlock(blockBytesAt(blockShift)));
+    setBlockShift(blockShift); // nothing throws from here on
+    setColumnsAt(0);
+    for (size_t i = 0; i < m_columns.size(); ++i) {
+        if (m_columns[i].life != nullptr)
+            m_columns[i].life->relocate(m_columnsAt[i], from[i], count());
+        else
+            std::memcpy(m_columnsAt[i], from[i], size_t{count()} * m_columns[i].bytes);
     }
-    m_columns = std::move(columns);
-    m_blockShift = blockShift;
-    m_blockBytes = bytes;
+    freeBlock(old);
 }
 
 void Archetype::reserve(uint32_t rows)
@@ -119,10 +140,8 @@ void Archetype::reserve(uint32_t rows)
     const uint32_t full = m_segmentShift + kBlockSegmentShift;
     while (rows > blockRows() && m_blockShift < full)
         growFirstBlock();
-    while (rows > m_blocks.size() << m_blockShift) {
-        m_blocks.reserve(m_blocks.size() + 1);
-        m_blocks.push_back(allocateBlock(m_blockBytes));
-    }
+    while (rows > m_blocks.size() << m_blockShift)
+        addBlock();
     const uint32_t segments = (rows + segmentRows() - 1) >> m_segmentShift;
     if (m_versions.size() < size_t{segments} * m_columns.size()) {
         for (RowChanges& changes : m_rowChanges)
@@ -180,16 +199,15 @@ Entity Archetype::closeGap(uint32_t row, Stamp stamp)
     if (row != last) {
         moved = m_entities[last];
         m_entities[row] = moved;
-        std::byte* const to = m_blocks[row >> m_blockShift];
-        const std::byte* const from = m_blocks[last >> m_blockShift];
-        const size_t toRow = row & (blockRows() - 1), fromRow = last & (blockRows() - 1);
-        for (const Column& c : m_columns) {
+        std::byte* const* const to = columnsAt(row);
+        std::byte* const* const from = columnsAt(last);
+        const size_t toRow = rowInBlock(row), fromRow = rowInBlock(last);
+        for (uint32_t i = 0; i < m_columnCount; ++i) {
+            const Column& c = m_columns[i];
             if (c.life != nullptr) [[unlikely]]
-                c.life->relocate(to + c.offset + toRow * c.bytes,
-                                 const_cast<std::byte*>(from) + c.offset + fromRow * c.bytes, 1);
+                c.life->relocate(to[i] + toRow * c.bytes, from[i] + fromRow * c.bytes, 1);
             else
-                copyValue(to + c.offset + toRow * c.bytes, from + c.offset + fromRow * c.bytes,
-                          c.bytes);
+                copyValue(to[i] + toRow * c.bytes, from[i] + fromRow * c.bytes, c.bytes);
         }
         markStructural(row, stamp);
     }
@@ -202,15 +220,16 @@ void Archetype::moveRow(uint32_t row, Archetype& source, uint32_t sourceRow)
 {
     const RowPlace to = rowPlace(row);
     const RowPlace from = source.rowPlace(sourceRow);
-    for (const Column& c : source.m_columns) {
-        std::byte* const value = from.block + c.offset + from.row * c.bytes;
+    for (uint32_t i = 0; i < source.m_columnCount; ++i) {
+        const Column& c = source.m_columns[i];
+        std::byte* const value = from.columns[i] + from.row * c.bytes;
         const int32_t first = to.columnOf[c.component];
         if (first < 0) {
             if (c.life != nullptr) [[unlikely]]
                 c.life->destroy(value, 1);
             continue;
         }
-        std::byte* const place = to.block + to.columns[first + c.lane].offset + to.row * c.bytes;
+        std::byte* const place = to.columns[first + c.lane] + to.row * c.bytes;
         if (c.life != nullptr) [[unlikely]]
             c.life->relocate(place, value, 1);
         else
@@ -242,6 +261,8 @@ void Archetype::trim()
     for (; m_blocks.size() > blocks; m_blocks.pop_back())
         freeBlock(m_blocks.back());
     m_blocks.shrink_to_fit();
+    m_columnsAt.resize(m_blocks.size() * m_columns.size());
+    m_columnsAt.shrink_to_fit();
     m_entities.shrink_to_fit();
     m_capacity = static_cast<uint32_t>(
         std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.capacity()}));
@@ -249,12 +270,12 @@ void Archetype::trim()
 
 size_t Archetype::bookBytes() const
 {
-    size_t bytes = sizeof(*this) + m_entities.capacity() * sizeof(Entity) +
-                   m_versions.capacity() * sizeof(uint64_t) +
-                   m_columns.capacity() * sizeof(Column) +
-                   m_blocks.capacity() * sizeof(std::byte*) + pages.capacity() * sizeof(uint32_t) +
-                   m_columnVersions.capacity() * sizeof(uint64_t) + m_disabled.bytes() +
-                   (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
+    size_t bytes =
+        sizeof(*this) + m_entities.capacity() * sizeof(Entity) +
+        m_versions.capacity() * sizeof(uint64_t) + m_columns.capacity() * sizeof(Column) +
+        (m_blocks.capacity() + m_columnsAt.capacity()) * sizeof(std::byte*) +
+        pages.capacity() * sizeof(uint32_t) + m_columnVersions.capacity() * sizeof(ColumnVersions) +
+        m_disabled.bytes() + (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
     for (const RowChanges& changes : m_rowChanges)
         bytes += changes.bytes();
     return bytes;

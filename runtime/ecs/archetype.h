@@ -30,12 +30,11 @@ struct Column {
     uint16_t lane = 0;
     uint32_t bytes = 0;      // of one row
     uint32_t prefix = 0;     // bytes of one row in the columns before
-    uint32_t offset = 0;     // of row 0 in a block, at the current block size
     int32_t rowChanges = -1; // index into m_rowChanges; on a component's first lane only
     const ComponentLife* life = nullptr; // null: trivially copyable
 };
 
-class Archetype {
+class alignas(64) Archetype { // a cache line
 public:
     Archetype(uint32_t index, const ComponentMask& mask);
     ~Archetype();
@@ -48,7 +47,7 @@ public:
     [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(m_entities.size()); }
     [[nodiscard]] uint32_t segmentShift() const { return m_segmentShift; }
     [[nodiscard]] uint32_t segmentRows() const { return 1u << m_segmentShift; }
-    [[nodiscard]] uint32_t blockRows() const { return 1u << m_blockShift; }
+    [[nodiscard]] uint32_t blockRows() const { return m_blockMask + 1; }
     [[nodiscard]] uint32_t segmentCount() const
     {
         return (count() + segmentRows() - 1) >> m_segmentShift;
@@ -59,9 +58,15 @@ public:
     [[nodiscard]] std::span<const Column> columns() const { return m_columns; }
     [[nodiscard]] std::byte* at(uint32_t column, uint32_t row) const
     {
-        const Column& c = m_columns[column];
-        return m_blocks[row >> m_blockShift] + c.offset + size_t{row & (blockRows() - 1)} * c.bytes;
+        return columnsAt(row)[column] + rowInBlock(row) * m_columns[column].bytes;
     }
+    // Where the columns of the row's block begin, [column].
+    [[nodiscard]] std::byte* const* columnsAt(uint32_t row) const
+    {
+        return m_columnsAt.data() + size_t{row >> m_blockShift} * m_columnCount;
+    }
+    [[nodiscard]] uint32_t columnCount() const { return m_columnCount; }
+    [[nodiscard]] size_t rowInBlock(uint32_t row) const { return row & m_blockMask; }
 
     // Structure. reserve() makes room for that many rows in all; it alone allocates, and where it
     // throws nothing has changed. append() leaves the values of the new rows as they are, unset or
@@ -71,9 +76,11 @@ public:
     [[nodiscard]] bool hasRoom(uint32_t more) const { return m_capacity - count() >= more; }
     void reserve(uint32_t rows);
     uint32_t append(std::span<const Entity> entities, Stamp stamp);
-    uint32_t append(Entity entity, Stamp stamp) // room is there
+    uint32_t append(Entity entity, const Stamp& stamp) // room is there
     {
         const uint32_t row = count();
+        if (m_entities.size() == m_entities.capacity())
+            __builtin_unreachable(); // or the compiler puts growth into every caller
         m_entities.push_back(entity);
         markStructural(row, stamp);
         return row;
@@ -107,15 +114,13 @@ public:
 
     // Where the values of one row lie, for code that writes several columns.
     struct RowPlace {
-        std::byte* block;
+        std::byte* const* columns;
         size_t row; // within the block
-        const Column* columns;
         const int16_t* columnOf;
     };
     [[nodiscard]] RowPlace rowPlace(uint32_t row) const
     {
-        return {m_blocks[row >> m_blockShift], row & (blockRows() - 1), m_columns.data(),
-                m_columnOf.data()};
+        return {columnsAt(row), rowInBlock(row), m_columnOf.data()};
     }
 
     // Change marks. `column` is the first column of a component.
@@ -133,34 +138,35 @@ public:
         if (const int32_t changes = m_columns[column].rowChanges; changes >= 0)
             m_rowChanges[changes].mark(segment, row, count);
     }
-    // All rows.
+    // All rows. Without bits per row, two stores, however many segments there are.
+    template <bool kRowChanges>
     void markAll(uint32_t column, Stamp stamp)
     {
-        if (m_columns[column].rowChanges >= 0)
+        if constexpr (kRowChanges)
             return markAllRows(column, stamp);
-        uint64_t* version = m_versions.data() + column;
-        for (uint32_t s = segmentCount(); s > 0; --s, version += m_columns.size())
-            *version = stamp.version;
-        __atomic_store_n(&m_columnVersions[column], stamp.version, __ATOMIC_RELAXED);
+        m_columnVersions[column].all = stamp.version;
+        __atomic_store_n(&m_columnVersions[column].newest, stamp.version, __ATOMIC_RELAXED);
     }
     [[nodiscard]] uint64_t version(uint32_t column, uint32_t segment) const
     {
-        return m_versions[size_t{segment} * m_columns.size() + column];
+        const uint64_t own = m_versions[size_t{segment} * m_columnCount + column];
+        const uint64_t all = m_columnVersions[column].all;
+        return own > all ? own : all;
     }
     // The newest of all segments.
     [[nodiscard]] uint64_t version(uint32_t column) const
     {
-        return __atomic_load_n(&m_columnVersions[column], __ATOMIC_RELAXED);
+        return __atomic_load_n(&m_columnVersions[column].newest, __ATOMIC_RELAXED);
     }
-    // Bits of 64 rows that may have changed after `since`: see RowChanges. All of a changed segment
+    // Rows of a segment that may have changed after `since`: see RowChanges. All of a changed one
     // for a component that did not opt in.
-    [[nodiscard]] uint64_t changedRows(uint32_t column, uint32_t segment, uint32_t word,
-                                       uint64_t since) const
+    [[nodiscard]] ChangedBits changedRows(uint32_t column, uint32_t segment, uint64_t since) const
     {
         if (version(column, segment) <= since)
-            return 0;
+            return {};
         const int32_t changes = m_columns[column].rowChanges;
-        return changes < 0 ? ~uint64_t{0} : m_rowChanges[changes].changed(segment, word, since);
+        return changes < 0 ? ChangedBits{~uint64_t{0}}
+                           : m_rowChanges[changes].changed(segment, since);
     }
 
     // Disabled rows (World::setEnabled). A row that is enabled again counts as changed: readers
@@ -179,20 +185,19 @@ public:
     [[nodiscard]] size_t valueBytes() const { return size_t{count()} * m_rowBytes; }
     [[nodiscard]] size_t bookBytes() const;
 
-    // Kept here for World. Where adding or removing a ComponentSet leads, by slot; null until asked
-    // for the first time. And the EntityTable's pages of the rows.
-    std::vector<Archetype*> withSet, withoutSet;
-    std::vector<uint32_t> pages;
-
 private:
-    [[nodiscard]] size_t layOutColumns(std::vector<Column>& columns, uint32_t blockShift) const;
+    [[nodiscard]] uint32_t columnGapAt(uint32_t shift) const;
+    [[nodiscard]] size_t blockBytesAt(uint32_t shift) const;
+    void setBlockShift(uint32_t shift);
+    void addBlock();
+    void setColumnsAt(size_t block);
     void growFirstBlock();
     void destroyRow(uint32_t row);
     void markAllRows(uint32_t column, Stamp stamp);
     void markStructural(uint32_t row, uint32_t count, Stamp stamp);
     // The same for one row. Rows come and go one after the other in one segment: if all its columns
     // have the version already, only the row bits are left to set.
-    void markStructural(uint32_t row, Stamp stamp)
+    void markStructural(uint32_t row, const Stamp& stamp)
     {
         const uint32_t segment = row >> m_segmentShift;
         if (segment != m_stampedSegment || stamp.version != m_stampedVersion)
@@ -204,7 +209,7 @@ private:
     // only ever written under one version at a time.
     void touch(uint32_t column, uint32_t segment, Stamp stamp)
     {
-        uint64_t& version = m_versions[size_t{segment} * m_columns.size() + column];
+        uint64_t& version = m_versions[size_t{segment} * m_columnCount + column];
         if (version == stamp.version)
             return;
         const int32_t changes = m_columns[column].rowChanges;
@@ -212,27 +217,42 @@ private:
             m_rowChanges[changes].startFrame(segment, version);
         version = stamp.version;
         if (this->version(column) < stamp.version)
-            __atomic_store_n(&m_columnVersions[column], stamp.version, __ATOMIC_RELAXED);
+            __atomic_store_n(&m_columnVersions[column].newest, stamp.version, __ATOMIC_RELAXED);
     }
 
-    std::vector<Entity> m_entities;   // [count]
-    std::vector<std::byte*> m_blocks; // owned, all of one size
-    std::vector<Column> m_columns;
-    std::vector<uint64_t> m_versions; // [segment][column], of the last write; first lanes only
-    std::vector<uint64_t> m_columnVersions; // [column]
-    std::vector<RowChanges> m_rowChanges;
+    struct ColumnVersions {
+        uint64_t newest = 0; // of all segments
+        uint64_t all = 0;    // when all rows were last marked at once; 0 with row changes
+    };
+
+    // Walks touch the first two cache lines alone.
+    std::vector<Entity> m_entities;      // [count]
+    std::vector<std::byte*> m_columnsAt; // [block][column]
+    uint16_t m_columnCount = 0;
+    uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
+    uint32_t m_blockMask = 0;  // blockRows() - 1
+    uint32_t m_segmentShift = 0;
+    uint32_t m_capacity = 0;                      // rows that have room in everything
+    std::vector<ColumnVersions> m_columnVersions; // [column]
     DisabledRows m_disabled;
+    std::vector<uint64_t> m_versions; // [segment][column], of the last write; first lanes only
+    std::vector<RowChanges> m_rowChanges;
+    uint32_t m_stampedSegment = kNone; // markStructural's last
+    uint64_t m_stampedVersion = 0;
+    std::vector<Column> m_columns;
+    std::vector<std::byte*> m_blocks; // owned, all of one size
     std::array<int16_t, kMaxComponents> m_columnOf;
     ComponentMask m_mask;
     uint32_t m_index;
     uint32_t m_rowBytes = 0;
-    uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
-    uint32_t m_segmentShift = 0;
-    uint32_t m_capacity = 0; // rows that have room in everything
-    bool m_hasLife = false;  // some column is not trivially copyable
+    bool m_hasLife = false; // some column is not trivially copyable
     size_t m_blockBytes = 0;
-    uint32_t m_stampedSegment = kNone; // markStructural's last
-    uint64_t m_stampedVersion = 0;
+
+public:
+    // Kept here for World. The EntityTable's pages of the rows. And where adding or removing a
+    // ComponentSet leads, by slot; null until asked for the first time.
+    std::vector<uint32_t> pages;
+    std::vector<Archetype*> withSet, withoutSet;
 };
 
 } // namespace penumbra::ecs

@@ -16,19 +16,24 @@ void copyStrided(std::byte* to, const std::byte* from, size_t fromStride, size_t
         std::memcpy(to, from, size);
 }
 
+template <class Word>
+void repeatValue(std::byte* to, const std::byte* from, size_t n)
+{
+    Word word;
+    std::memcpy(&word, from, sizeof(word));
+    for (size_t i = 0; i < n; ++i)
+        std::memcpy(to + i * sizeof(word), &word, sizeof(word));
+}
+
 // n values of `bytes`, side by side, from places fromStride apart; 0 repeats one.
 void copyValues(std::byte* to, const std::byte* from, size_t fromStride, size_t n, size_t bytes)
 {
     if (fromStride == bytes) {
         std::memcpy(to, from, n * bytes);
-    } else if (fromStride == 0 && bytes > 0) { // double what is there: all but the first are large
-        const size_t all = n * bytes;
-        size_t done = std::min(all, bytes);
-        std::memcpy(to, from, done);
-        for (; done < all && done < 1024; done += std::min(done, all - done))
-            std::memcpy(to + done, to, std::min(done, all - done));
-        for (const size_t step = done; done < all; done += std::min(step, all - done))
-            std::memcpy(to + done, to, std::min(step, all - done));
+    } else if (fromStride == 0 && bytes == 4) {
+        repeatValue<uint32_t>(to, from, n);
+    } else if (fromStride == 0 && bytes == 16) {
+        repeatValue<std::array<uint64_t, 2>>(to, from, n);
     } else if (bytes == 4) {
         copyStrided<4>(to, from, fromStride, n, bytes);
     } else if (bytes == 12) {
@@ -40,14 +45,16 @@ void copyValues(std::byte* to, const std::byte* from, size_t fromStride, size_t 
     }
 }
 
+using Word [[gnu::may_alias]] = uint32_t; // of whatever type
+
 // x, y, z of n values into three columns, in one walk over the source.
-void copyLanes3(std::byte* __restrict x, std::byte* __restrict y, std::byte* __restrict z,
-                const std::byte* __restrict from, size_t fromStride, size_t n)
+void copyLanes3(Word* __restrict x, Word* __restrict y, Word* __restrict z,
+                const Word* __restrict from, size_t n)
 {
-    for (size_t i = 0; i < n; ++i, from += fromStride) {
-        std::memcpy(x + 4 * i, from, 4);
-        std::memcpy(y + 4 * i, from + 4, 4);
-        std::memcpy(z + 4 * i, from + 8, 4);
+    for (size_t i = 0; i < n; ++i) {
+        x[i] = from[3 * i];
+        y[i] = from[3 * i + 1];
+        z[i] = from[3 * i + 2];
     }
 }
 
@@ -95,9 +102,11 @@ void Archetype::fill(ComponentId id, uint32_t row, uint32_t count, const void* v
             }
         }
         if (const auto first = static_cast<uint32_t>(m_columnOf[id]);
-            info.laneCount == 3 && m_columns[first].bytes == 4 && stride != 0) {
-            copyLanes3(at(first, at0), at(first + 1, at0), at(first + 2, at0), source, stride,
-                       length);
+            info.laneCount == 3 && m_columns[first].bytes == 4 && stride == 12) {
+            const auto words = [&](uint32_t lane) {
+                return reinterpret_cast<Word*>(at(first + lane, at0));
+            };
+            copyLanes3(words(0), words(1), words(2), reinterpret_cast<const Word*>(source), length);
             source += length * stride;
             done += length;
             continue;

@@ -43,7 +43,11 @@ public:
             a.m_words[i] &= ~b.m_words[i];
         return a;
     }
-    friend bool operator==(const ComponentMask&, const ComponentMask&) = default;
+    friend bool operator==(const ComponentMask& a, const ComponentMask& b)
+    {
+        return a.m_words[0] == b.m_words[0] && a.m_words[1] == b.m_words[1] &&
+               a.m_words[2] == b.m_words[2] && a.m_words[3] == b.m_words[3];
+    }
 
     // In ascending order of id.
     template <class F>

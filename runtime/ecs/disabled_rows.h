@@ -60,9 +60,9 @@ private:
     // The first row in [row, end) that is as asked for; `end` if there is none.
     [[nodiscard]] uint32_t find(uint32_t row, uint32_t end, bool disabled) const;
 
+    uint32_t m_count = 0;           // first: what every walk asks
     std::vector<uint64_t> m_bits;   // [row / 64]; rows beyond the archetype's are 0
     std::vector<uint32_t> m_counts; // [segment]
-    uint32_t m_count = 0;
 };
 
 } // namespace penumbra::ecs

@@ -19,29 +19,44 @@ Entity EntityTable::allocateNew()
     return {static_cast<uint32_t>(m_records.size() - 1), 1};
 }
 
+// The next free indices for entities at `place` and the places after it, up to out.size(): those
+// that follow each other, up or down, as they mostly do. Then no load waits for the one before.
+uint32_t EntityTable::reuse(std::span<Entity> out, uint32_t place)
+{
+    const auto most = static_cast<uint32_t>(std::min<size_t>(out.size(), m_freeCount));
+    Record* const records = m_records.data();
+    const uint32_t first = m_firstFree;
+    const uint32_t step = (records[first].place & ~kFree) - first;
+    uint32_t count = 1;
+    while (count < most && (step == 1 || step == ~0u) &&
+           records[first + (count - 1) * step].place == (kFree | (first + count * step)))
+        ++count;
+    m_firstFree = records[first + (count - 1) * step].place & ~kFree;
+    m_freeCount -= count;
+    for (uint32_t i = 0; i < count; ++i) {
+        Record& record = records[first + i * step];
+        out[i] = {first + i * step, record.generation};
+        record.place = place + i;
+    }
+    return count;
+}
+
 void EntityTable::allocateMany(std::span<Entity> out, std::span<const uint32_t> pages, uint32_t row)
 {
-    const auto place = [&] {
-        const uint32_t at = pages[row >> kPageShift] << kPageShift | (row & (kPageRows - 1));
-        ++row;
-        return at;
-    };
-    const size_t reused = std::min<size_t>(out.size(), m_freeCount);
-    uint32_t free = m_firstFree;
-    for (Entity& entity : out.first(reused)) {
-        Record& record = m_records[free];
-        entity = {free, record.generation};
-        free = record.place & ~kFree;
-        record.place = place();
+    while (!out.empty()) { // page by page: within one, places are numbers in a row
+        const uint32_t inPage = row & (kPageRows - 1);
+        const uint32_t place = pages[row >> kPageShift] << kPageShift | inPage;
+        const auto length = static_cast<uint32_t>(std::min<size_t>(out.size(), kPageRows - inPage));
+        uint32_t done = 0;
+        while (done < length && m_freeCount > 0)
+            done += reuse(out.subspan(done, length - done), place + done);
+        for (; done < length; ++done) {
+            out[done] = {indexCount(), 1};
+            m_records.push_back({1, place + done});
+        }
+        row += length;
+        out = out.subspan(length);
     }
-    m_firstFree = free;
-    m_freeCount -= static_cast<uint32_t>(reused);
-    for (Entity& entity : out.subspan(reused)) {
-        entity = {static_cast<uint32_t>(m_records.size()), 1};
-        m_records.push_back({1, place()});
-    }
-    m_count += static_cast<uint32_t>(out.size());
-    ++m_moves;
 }
 
 uint32_t EntityTable::addPage(Archetype* archetype, uint32_t firstRow)
@@ -86,7 +101,7 @@ void EntityTable::restore(std::span<const uint32_t> generations, std::span<const
         table.m_firstFree = index;
     }
     table.m_freeCount = static_cast<uint32_t>(free.size());
-    table.m_count = count;
+    table.m_retired = table.indexCount() - table.m_freeCount - count;
     table.m_moves = m_moves + 1;
     *this = std::move(table);
 }

@@ -44,8 +44,12 @@ public:
     // `page` holds the row: Archetype::pages[row >> kPageShift].
     void setPlace(Entity entity, uint32_t page, uint32_t row)
     {
-        m_records[entity.index].place = page << kPageShift | (row & (kPageRows - 1));
+        setFirstPlace(entity, page, row);
         ++m_moves;
+    }
+    void setFirstPlace(Entity entity, uint32_t page, uint32_t row) // of a new entity
+    {
+        m_records[entity.index].place = page << kPageShift | (row & (kPageRows - 1));
     }
 
     // Room for `count` allocations, which then do not fail.
@@ -57,13 +61,11 @@ public:
     // The new entity is alive once it has a place, which the caller sets.
     Entity allocate()
     {
-        ++m_count;
         if (m_freeCount == 0)
             return allocateNew();
         const uint32_t index = m_firstFree;
         m_firstFree = m_records[index].place & ~kFree;
         --m_freeCount;
-        m_records[index].place = kFree;
         return {index, m_records[index].generation};
     }
     // For rows [row, row + out.size()), whose pages are given; room is there.
@@ -72,12 +74,13 @@ public:
     {
         Record& record = m_records[entity.index];
         record.place = kFree | m_firstFree;
-        --m_count;
         ++m_moves;
         // The last generation below the deferred bit retires the index: no id ever comes back.
         if (++record.generation < (1u << 31)) {
             m_firstFree = entity.index;
             ++m_freeCount;
+        } else {
+            ++m_retired;
         }
     }
 
@@ -92,9 +95,9 @@ public:
                  uint32_t count);
 
     [[nodiscard]] uint32_t generation(uint32_t index) const { return m_records[index].generation; }
-    [[nodiscard]] uint32_t count() const { return m_count; }
+    [[nodiscard]] uint32_t count() const { return indexCount() - m_freeCount - m_retired; }
     [[nodiscard]] uint32_t indexCount() const { return static_cast<uint32_t>(m_records.size()); }
-    // Grows whenever a row got another place: tells whether remembered places still hold.
+    // Grows whenever an entity got another place: tells whether remembered places still hold.
     [[nodiscard]] uint64_t moves() const { return m_moves; }
     [[nodiscard]] size_t bytes() const;
 
@@ -111,6 +114,7 @@ private:
     };
 
     Entity allocateNew();
+    uint32_t reuse(std::span<Entity> out, uint32_t place);
     void grow(size_t count);
 
     std::vector<Record> m_records; // [index]
@@ -119,7 +123,7 @@ private:
     uint64_t m_moves = 0;
     uint32_t m_firstFree = 0; // of m_freeCount
     uint32_t m_freeCount = 0;
-    uint32_t m_count = 0;
+    uint32_t m_retired = 0; // indices
 };
 
 // Arrays with an element per entity grow by a quarter, not twofold: at a million entities what is

@@ -22,7 +22,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -44,13 +43,15 @@ enum class FieldType : uint8_t {
 };
 [[nodiscard]] std::string_view toString(FieldType type);
 
+inline constexpr double kUnbounded = __builtin_huge_val(); // infinity, without <limits>
+
 struct Field {
     std::string_view name;
     FieldType type = FieldType::automatic;
-    uint32_t offset = 0, bytes = 0;                        // in the component
-    std::string_view unit;                                 // "m", "rad", "W/(m² sr)"; empty: none
-    double min = -std::numeric_limits<double>::infinity(); // of every number in it, inclusive
-    double max = std::numeric_limits<double>::infinity();
+    uint32_t offset = 0, bytes = 0; // in the component
+    std::string_view unit;          // "m", "rad", "W/(m² sr)"; empty: none
+    double min = -kUnbounded;       // of every number in it, inclusive
+    double max = kUnbounded;
     std::span<const std::string_view> names; // of a choice
     std::string_view kind;                   // of an asset: "mesh"
 };
@@ -59,8 +60,8 @@ struct Field {
 struct FieldNotes {
     FieldType type = FieldType::automatic;
     std::string_view unit;
-    double min = -std::numeric_limits<double>::infinity();
-    double max = std::numeric_limits<double>::infinity();
+    double min = -kUnbounded;
+    double max = kUnbounded;
     std::span<const std::string_view> names;
     std::string_view kind;
 };

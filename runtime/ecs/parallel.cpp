@@ -1,3 +1,4 @@
+// Not instrumented in builds for ThreadSanitizer: thread_order.h.
 #include "runtime/ecs/parallel.h"
 
 #include "runtime/ecs/thread_order.h"

@@ -44,6 +44,8 @@ class Query {
     template <size_t k>
     using Argument = std::tuple_element_t<k, Arguments>;
     using DataIndices = std::make_index_sequence<kDataCount>;
+    using Flat = FlatColumns<Arguments>;
+    using FlatIndices = std::make_index_sequence<Flat::kCount>;
     static_assert(kDataCount + kChangedCount <= kMaxQueryTerms);
     static_assert((!(kWrites<Terms> &&
                      std::is_same_v<typename TermTraits<Terms>::Component, Parent>)&&...),
@@ -132,19 +134,24 @@ private:
     }
     [[nodiscard]] bool archetypePasses(const Match& match) const;
     [[nodiscard]] bool segmentPasses(const Match& match, uint32_t segment) const;
-    [[nodiscard]] uint64_t changedRows(const Match& match, uint32_t segment, uint32_t word) const;
-    // `count` rows from `row` of a segment are about to be written.
+    // These rows are about to be written: all; `count` from `row` of a segment.
+    void markAll(const Match& match) const;
     void mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const;
+    // In the columns with, or in those without bits by row.
+    uint16_t* listChanged(const Match& match, uint32_t segment, uint32_t offset,
+                          uint16_t* end) const;
+    template <bool kByRow>
+    void markChanged(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const;
+    template <class Mark>
+    static void forWritten(const Match& match, Mark&& mark); // mark(kRowChanges, column)
 
-    // The pointers to row `row` of all columns of all data terms, flat.
-    template <size_t... k>
-    static auto columnPointers(const Match& match, uint32_t row, std::index_sequence<k...>);
-    template <size_t k>
-    static auto lanePointers(const Match& match, uint32_t row);
+    // Pointers into all columns of all data terms, flat; as a tuple, to row `row`.
+    template <size_t p>
+    static auto pointer(const Match& match, std::byte* const* columnsAt, size_t row);
+    template <size_t... p>
+    static auto columnPointers(const Match& match, uint32_t row, std::index_sequence<p...>);
     template <size_t k, class Columns>
     static auto segmentArgument(const Columns& columns);
-    template <size_t k>
-    static constexpr size_t firstPointer();
 
     template <class F, class Columns, size_t... k>
     static void callRow(F& f, const Entity* entities, size_t row, const Columns& columns,
@@ -152,12 +159,17 @@ private:
     template <class F, class... Elements>
     [[gnu::noinline]] static void callRows(F& f, const Entity* entities, size_t count,
                                            Elements* __restrict... columns);
+    template <class F, size_t... p>
+    static void callRun(F& f, const Match& match, uint32_t row, uint32_t count,
+                        std::index_sequence<p...>);
+    template <class F, size_t... p>
+    static void callAll(F& f, const Match& match, std::index_sequence<p...>); // all rows
     template <class F>
-    void callRun(F& f, const Match& match, uint32_t row, uint32_t count) const;
+    void callEnabled(F& f, const Match& match) const; // where rows are to be skipped
     template <class F>
     void callMarked(F& f, const Run& run) const; // marks, then callRun
     template <class F>
-    void callChanged(F& f, const Run& segment) const;
+    void callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const;
     template <class F>
     void callSegment(F& f, const Run& run, uint32_t ordinal) const;
 

@@ -27,10 +27,15 @@ uint32_t registerQuery(const QueryTerms& terms)
 {
     QueryRegistry& all = registry();
     const std::lock_guard lock(all.mutex);
-    const auto found = std::find(all.terms.begin(), all.terms.end(), terms);
+    const auto found = std::find_if(all.terms.begin(), all.terms.end(), [&](const QueryTerms& t) {
+        return t.with == terms.with && t.without == terms.without && t.data == terms.data &&
+               t.changed == terms.changed;
+    });
     const auto slot = static_cast<uint32_t>(found - all.terms.begin());
-    if (found == all.terms.end())
+    if (found == all.terms.end()) {
+        PENUMBRA_ASSERT(slot < kMaxQueries, "more than {} kinds of query", kMaxQueries);
         all.terms.push_back(terms);
+    }
     return slot;
 }
 

@@ -14,10 +14,11 @@ struct QueryTerms {
     std::vector<ComponentId> data; // columns to hand out, in the order of the terms
     std::vector<ComponentId>
         changed; // a row passes if any of them changed; empty: every row passes
-    friend bool operator==(const QueryTerms&, const QueryTerms&) = default;
 };
 
-// Thread-safe. The slot is dense: worlds keep their caches in an array.
+inline constexpr uint32_t kMaxQueries = 4096; // in a program
+
+// Thread-safe. The slot is dense, below kMaxQueries: worlds keep their caches in an array.
 [[nodiscard]] uint32_t registerQuery(const QueryTerms& terms);
 [[nodiscard]] const QueryTerms& queryTerms(uint32_t slot);
 

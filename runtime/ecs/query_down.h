@@ -54,7 +54,7 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
             mark(*match, row >> archetype.segmentShift(), first, length);
             row += length;
         }
-        const auto columns = columnPointers(*match, run.row, DataIndices());
+        const auto columns = columnPointers(*match, run.row, FlatIndices());
         [[maybe_unused]] const Entity* const entities = archetype.entities().data() + run.row;
         uint32_t parentSlot = kNone;
         First* parent = nullptr;
@@ -72,13 +72,13 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
             [&]<size_t... k>(std::index_sequence<k...>)
             {
                 Arguments arguments;
-                (std::get<k>(arguments).template load<firstPointer<k>()>(columns, i), ...);
+                (std::get<k>(arguments).template load<Flat::first(k)>(columns, i), ...);
                 if constexpr (std::is_invocable_v<
                                   F&, Entity, decltype(std::get<k>(arguments).get())..., First*>)
                     f(entities[i], std::get<k>(arguments).get()..., parent);
                 else
                     f(std::get<k>(arguments).get()..., parent);
-                (std::get<k>(arguments).template store<firstPointer<k>()>(columns, i), ...);
+                (std::get<k>(arguments).template store<Flat::first(k)>(columns, i), ...);
             }
             (DataIndices());
         }

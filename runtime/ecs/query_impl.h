@@ -87,81 +87,58 @@ uint32_t Query<Terms...>::segmentCount() const
 }
 
 template <class... Terms>
-uint64_t Query<Terms...>::changedRows(const Match& match, uint32_t segment, uint32_t word) const
-{
-    uint64_t rows = 0;
-    for (size_t i = 0; i < kChangedCount; ++i)
-        rows |= match.archetype->changedRows(match.columns[kDataCount + i], segment, word, m_since);
-    return rows;
-}
-
-template <class... Terms>
-bool Query<Terms...>::segmentPasses(const Match& match, uint32_t segment) const
-{
-    bool passes = kChangedCount == 0;
-    for (size_t i = 0; i < kChangedCount; ++i)
-        passes |= match.archetype->version(match.columns[kDataCount + i], segment) > m_since;
-    return passes;
-}
-
-// False if no segment passes: most worlds hold still for the most part.
-template <class... Terms>
-bool Query<Terms...>::archetypePasses(const Match& match) const
-{
-    bool passes = kChangedCount == 0;
-    for (size_t i = 0; i < kChangedCount; ++i)
-        passes |= match.archetype->version(match.columns[kDataCount + i]) > m_since;
-    return passes;
-}
-
-template <class... Terms>
-void Query<Terms...>::mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const
+template <class Mark>
+void Query<Terms...>::forWritten(const Match& match, Mark&& mark)
 {
     [&]<size_t... k>(std::index_sequence<k...>)
     {
-        [[maybe_unused]] const auto markTerm = [&](bool writes, int16_t column) {
-            if (writes && column >= 0)
-                match.archetype->markRows(column, segment, row, count, m_stamp);
+        [[maybe_unused]] const auto markTerm = [&]<class Argument>(Argument, int16_t column) {
+            if (!std::is_const_v<typename Argument::Access> &&
+                (!Argument::Traits::kOptional || column >= 0))
+                mark(std::bool_constant<ComponentTraits<typename Argument::T>::kRowChanges>(),
+                     static_cast<uint32_t>(column));
         };
-        (markTerm(!std::is_const_v<typename Argument<k>::Access>, match.columns[k]), ...);
+        (markTerm(Argument<k>(), match.columns[k]), ...);
     }
     (DataIndices());
 }
 
 template <class... Terms>
-template <size_t k>
-auto Query<Terms...>::lanePointers(const Match& match, uint32_t row)
+void Query<Terms...>::mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const
 {
-    using Element = typename Argument<k>::Element;
-    return [&]<size_t... kLane>(std::index_sequence<kLane...>)
-    {
-        const int32_t column = match.columns[k];
-        const auto pointer = [&](size_t lane) {
-            std::byte* at = column < 0 ? nullptr : match.archetype->at(column + lane, row);
-            return reinterpret_cast<Element*>(at);
-        };
-        return std::make_tuple(pointer(kLane)...);
-    }
-    (std::make_index_sequence<Argument<k>::kPointers>());
+    forWritten(match, [&](auto, uint32_t column) {
+        match.archetype->markRows(column, segment, row, count, m_stamp);
+    });
 }
 
 template <class... Terms>
-template <size_t... k>
+void Query<Terms...>::markAll(const Match& match) const
+{
+    forWritten(match, [&](auto rowChanges, uint32_t column) {
+        match.archetype->template markAll<rowChanges()>(column, m_stamp);
+    });
+}
+
+template <class... Terms>
+template <size_t p>
+[[gnu::always_inline]] inline auto Query<Terms...>::pointer(const Match& match,
+                                                            std::byte* const* columnsAt, size_t row)
+{
+    constexpr typename Flat::Place kPlace = Flat::kPlaces[p];
+    using Term = Argument<kPlace.argument>;
+    const int32_t column = match.columns[kPlace.argument];
+    if (Term::Traits::kOptional && column < 0)
+        return static_cast<typename Term::Element*>(nullptr);
+    return reinterpret_cast<typename Term::Element*>(columnsAt[column + kPlace.lane]) + row;
+}
+
+template <class... Terms>
+template <size_t... p>
 auto Query<Terms...>::columnPointers([[maybe_unused]] const Match& match,
-                                     [[maybe_unused]] uint32_t row, std::index_sequence<k...>)
+                                     [[maybe_unused]] uint32_t row, std::index_sequence<p...>)
 {
-    return std::tuple_cat(lanePointers<k>(match, row)...);
-}
-
-template <class... Terms>
-template <size_t k>
-constexpr size_t Query<Terms...>::firstPointer()
-{
-    return []<size_t... i>(std::index_sequence<i...>)
-    {
-        return (size_t{0} + ... + Argument<i>::kPointers);
-    }
-    (std::make_index_sequence<k>());
+    return std::make_tuple(
+        pointer<p>(match, match.archetype->columnsAt(row), match.archetype->rowInBlock(row))...);
 }
 
 template <class... Terms>
@@ -171,12 +148,12 @@ void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities,
                               std::index_sequence<k...>)
 {
     Arguments arguments;
-    (std::get<k>(arguments).template load<firstPointer<k>()>(columns, row), ...);
+    (std::get<k>(arguments).template load<Flat::first(k)>(columns, row), ...);
     if constexpr (std::is_invocable_v<F&, Entity, decltype(std::get<k>(arguments).get())...>)
         f(entities[row], std::get<k>(arguments).get()...);
     else
         f(std::get<k>(arguments).get()...);
-    (std::get<k>(arguments).template store<firstPointer<k>()>(columns, row), ...);
+    (std::get<k>(arguments).template store<Flat::first(k)>(columns, row), ...);
 }
 
 // Its own function because the compiler trusts __restrict on parameters alone: without it, loops
@@ -192,14 +169,41 @@ void Query<Terms...>::callRows(F& f, const Entity* entities, size_t count,
 }
 
 template <class... Terms>
-template <class F>
-void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row, uint32_t count) const
+template <class F, size_t... p>
+[[gnu::always_inline]] inline void Query<Terms...>::callRun(F& f, const Match& match, uint32_t row,
+                                                            uint32_t count,
+                                                            std::index_sequence<p...>)
 {
-    std::apply(
-        [&](auto*... columns) {
-            callRows(f, match.archetype->entities().data() + row, count, columns...);
-        },
-        columnPointers(match, row, DataIndices()));
+    const Archetype& archetype = *match.archetype;
+    [[maybe_unused]] std::byte* const* const columnsAt = archetype.columnsAt(row);
+    [[maybe_unused]] const size_t inBlock = archetype.rowInBlock(row);
+    callRows(f, archetype.entities().data() + row, count, pointer<p>(match, columnsAt, inBlock)...);
+}
+
+template <class... Terms>
+template <class F, size_t... p>
+[[gnu::always_inline]] inline void Query<Terms...>::callAll(F& f, const Match& match,
+                                                            std::index_sequence<p...>)
+{
+    const Archetype& archetype = *match.archetype;
+    std::byte* const* columnsAt = archetype.columnsAt(0);
+    const Entity* entities = archetype.entities().data();
+    size_t left = archetype.count();
+    for (const size_t block = archetype.blockRows(); left > block; left -= block) {
+        callRows(f, entities, block, pointer<p>(match, columnsAt, 0)...);
+        columnsAt += archetype.columnCount();
+        entities += block;
+    }
+    callRows(f, entities, left, pointer<p>(match, columnsAt, 0)...);
+}
+
+// Its own function so that each() keeps its registers.
+template <class... Terms>
+template <class F>
+[[gnu::noinline, gnu::cold]] void Query<Terms...>::callEnabled(F& f, const Match& match) const
+{
+    for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
+        forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
 }
 
 template <class... Terms>
@@ -207,48 +211,7 @@ template <class F>
 void Query<Terms...>::callMarked(F& f, const Run& run) const
 {
     mark(*run.match, run.segment, run.row, run.count);
-    callRun(f, *run.match, run.first(), run.count);
-}
-
-template <class... Terms>
-template <class F>
-void Query<Terms...>::callChanged(F& f, const Run& segment) const
-{
-    const Match& match = *segment.match;
-    const Archetype& archetype = *match.archetype;
-    const uint32_t first = segment.first();
-    const uint32_t rows = segment.count;
-    const bool skipsSome = skips(archetype);
-    const auto columns = columnPointers(match, first, DataIndices());
-    const Entity* entities = archetype.entities().data() + first;
-    // First which rows, without a branch per row: where few changed, here and there, wrong guesses
-    // would take longer than the work.
-    std::array<uint16_t, kPageRows + 3> changed;
-    uint32_t count = 0;
-    for (uint32_t word = 0; word * 64 < rows; ++word) {
-        const uint32_t left = rows - word * 64;
-        uint64_t bits = changedRows(match, segment.segment, word);
-        bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
-        if (skipsSome)
-            bits &= ~archetype.disabled().word(first + word * 64);
-        if (bits == ~uint64_t{0}) {
-            for (uint32_t i = 0; i < 64; ++i)
-                changed[count++] = static_cast<uint16_t>(word * 64 + i);
-            continue;
-        }
-        do
-            for (uint32_t i = 0; i < 3; ++i) { // past the last bit, writes what counts for nothing
-                changed[count] = static_cast<uint16_t>(
-                    word * 64 + static_cast<uint32_t>(std::countr_zero(bits)));
-                count += bits != 0;
-                bits &= bits - 1;
-            }
-        while (bits != 0);
-    }
-    for (uint32_t i = 0; i < count; ++i) {
-        mark(match, segment.segment, changed[i], 1);
-        callRow(f, entities, changed[i], columns, DataIndices());
-    }
+    callRun(f, *run.match, run.first(), run.count, FlatIndices());
 }
 
 template <class... Terms>
@@ -256,7 +219,7 @@ template <size_t k, class Columns>
 auto Query<Terms...>::segmentArgument(const Columns& columns)
 {
     using Access = typename Argument<k>::Access;
-    constexpr size_t kFirst = firstPointer<k>();
+    constexpr size_t kFirst = Flat::first(k);
     if constexpr (Argument<k>::kSplit)
         return [&]<size_t... kLane>(std::index_sequence<kLane...>)
         {
@@ -271,7 +234,7 @@ template <class F>
 void Query<Terms...>::callSegment(F& f, const Run& run, uint32_t ordinal) const
 {
     mark(*run.match, run.segment, run.row, run.count);
-    const auto columns = columnPointers(*run.match, run.first(), DataIndices());
+    const auto columns = columnPointers(*run.match, run.first(), FlatIndices());
     [&]<size_t... k>(std::index_sequence<k...>)
     {
         f(Segment{run.match->archetype->entities().data() + run.first(), run.count, ordinal},

@@ -140,4 +140,34 @@ private:
     [[no_unique_address]] std::conditional_t<kSplit, T, Nothing> m_value{};
 };
 
+// The columns of a tuple of RowArguments as one list: the lanes of an argument side by side.
+template <class Arguments>
+struct FlatColumns;
+template <class... Arguments>
+struct FlatColumns<std::tuple<Arguments...>> {
+    struct Place {
+        size_t argument, lane;
+    };
+    static constexpr size_t kCount = (size_t{0} + ... + Arguments::kPointers);
+    static constexpr std::array<Place, kCount> kPlaces = [] {
+        std::array<Place, kCount> places{};
+        size_t at = 0, argument = 0;
+        [[maybe_unused]] const auto add = [&](size_t lanes) {
+            for (size_t lane = 0; lane < lanes; ++lane)
+                places[at++] = {argument, lane};
+            ++argument;
+        };
+        (add(Arguments::kPointers), ...);
+        return places;
+    }();
+    // Of the argument's first lane.
+    static constexpr size_t first(size_t argument)
+    {
+        size_t at = 0;
+        while (kPlaces[at].argument != argument)
+            ++at;
+        return at;
+    }
+};
+
 } // namespace penumbra::ecs

@@ -1,7 +1,7 @@
 // The templates of query.h, which includes this file: each() and the like.
 #pragma once
 
-#include "runtime/ecs/query_impl.h"
+#include "runtime/ecs/query_changed.h"
 
 namespace penumbra::ecs {
 
@@ -79,32 +79,28 @@ template <class F>
 void Query<Terms...>::each(F&& f) const
 {
     if constexpr (kChangedCount > 0) {
-        forRuns<true>([&](const Run& run) { callChanged(f, run); });
+        const IterationGuard guard(*m_iterating);
+        for (const Match& match : m_cache->matches()) {
+            const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
+            const uint32_t step =
+                std::max(match.archetype->blockRows() >> match.archetype->segmentShift(), 1u);
+            for (uint32_t s = 0; s < segments; s += step)
+                callChanged(f, match, s, std::min(s + step, segments) - 1);
+        }
         return;
     }
     // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
     const IterationGuard guard(*m_iterating);
     for (const Match& match : m_cache->matches()) {
-        Archetype& archetype = *match.archetype;
+        const Archetype& archetype = *match.archetype;
         if (skips(archetype)) [[unlikely]] {
-            for (uint32_t s = 0; s < archetype.segmentCount(); ++s)
-                forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+            callEnabled(f, match);
             continue;
         }
-        const uint32_t rows = archetype.count();
-        if (rows == 0)
+        if (archetype.count() == 0)
             continue;
-        [&]<size_t... k>(std::index_sequence<k...>)
-        {
-            [[maybe_unused]] const auto markTerm = [&](bool writes, int16_t column) {
-                if (writes && column >= 0)
-                    archetype.markAll(static_cast<uint32_t>(column), m_stamp);
-            };
-            (markTerm(!std::is_const_v<typename Argument<k>::Access>, match.columns[k]), ...);
-        }
-        (DataIndices());
-        for (uint32_t row = 0; row < rows; row += archetype.blockRows())
-            callRun(f, match, row, std::min(archetype.blockRows(), rows - row));
+        markAll(match);
+        callAll(f, match, FlatIndices());
     }
 }
 
@@ -113,7 +109,9 @@ template <class F>
 void Query<Terms...>::parallelEach(F&& f) const
 {
     if constexpr (kChangedCount > 0) {
-        forRunsParallel<true>([&](const Run& run, uint32_t) { callChanged(f, run); });
+        forRunsParallel<true>([&](const Run& run, uint32_t) {
+            callChanged(f, *run.match, run.segment, run.segment);
+        });
     } else {
         // Several segments of a block in one task, where there are plenty: longer loops cost less.
         struct Task {
@@ -143,7 +141,7 @@ void Query<Terms...>::parallelEach(F&& f) const
             const uint32_t count = std::min(task.count * rows, archetype.count() - first);
             for (uint32_t row = 0; !kReadOnly && row < count; row += rows)
                 mark(*task.match, task.segment + row / rows, 0, std::min(rows, count - row));
-            callRun(f, *task.match, first, count);
+            callRun(f, *task.match, first, count, FlatIndices());
         };
         const auto count = static_cast<uint32_t>(tasks.size());
         if (count >= kInlineSegments)

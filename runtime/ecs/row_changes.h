@@ -17,6 +17,17 @@ struct Stamp {
     uint64_t frameBase = 0;
 };
 
+// The rows of one segment that may have changed after some version, 64 to a word.
+struct ChangedBits {
+    uint64_t always = 0;             // in every word
+    const uint64_t* fresh = nullptr; // [word], null: none
+    const uint64_t* older = nullptr;
+    [[nodiscard]] uint64_t word(uint32_t i) const
+    {
+        return always | (fresh != nullptr ? fresh[i] : 0) | (older != nullptr ? older[i] : 0);
+    }
+};
+
 class RowChanges {
 public:
     explicit RowChanges(uint32_t segmentRows) : m_words((segmentRows + 63) / 64) {}
@@ -29,30 +40,35 @@ public:
     // Rows count from the segment's start.
     void mark(uint32_t segment, uint32_t row)
     {
-        m_fresh[segment * m_words + row / 64] |= uint64_t{1} << (row % 64);
+        fresh(segment)[row / 64] |= uint64_t{1} << (row % 64);
     }
     void mark(uint32_t segment, uint32_t row, uint32_t count);
 
-    // Bits of rows word*64 … word*64+63 that may have changed after version `since`.
-    [[nodiscard]] uint64_t changed(uint32_t segment, uint32_t word, uint64_t since) const
+    [[nodiscard]] ChangedBits changed(uint32_t segment, uint64_t since) const
     {
-        if (since < m_olderFrom[segment])
-            return ~uint64_t{0};
-        const uint32_t at = segment * m_words + word;
-        return since < m_freshFrom[segment] ? m_fresh[at] | m_older[at] : m_fresh[at];
+        if (since < m_from[segment].older)
+            return {~uint64_t{0}};
+        const uint64_t* const bits = m_bits.data() + size_t{segment} * 2 * m_words;
+        return {0, bits, since < m_from[segment].fresh ? bits + m_words : nullptr};
     }
 
     [[nodiscard]] size_t bytes() const
     {
-        return (m_fresh.capacity() + m_older.capacity() + m_freshFrom.capacity() +
-                m_olderFrom.capacity()) *
-               sizeof(uint64_t);
+        return m_bits.capacity() * sizeof(uint64_t) + m_from.capacity() * sizeof(From);
     }
 
 private:
+    struct From { // bits cover changes after this
+        uint64_t fresh = 0, older = 0;
+    };
+    [[nodiscard]] uint64_t* fresh(uint32_t segment)
+    {
+        return m_bits.data() + size_t{segment} * 2 * m_words;
+    }
+
     uint32_t m_words; // per segment: segments share no word, so threads may mark in parallel
-    std::vector<uint64_t> m_fresh, m_older;         // [segment][word]
-    std::vector<uint64_t> m_freshFrom, m_olderFrom; // [segment] bits cover changes after this
+    std::vector<uint64_t> m_bits; // [segment][fresh, older][word]
+    std::vector<From> m_from;     // [segment]
 };
 
 } // namespace penumbra::ecs

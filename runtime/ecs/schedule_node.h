@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/ecs/schedule.h"
-#include "runtime/ecs/thread_order.h"
 
 #include <atomic>
 
@@ -16,7 +15,6 @@ struct Schedule::Node {
     CommandBuffer commands;
     std::vector<uint32_t> next;        // systems of the phase that wait for this one
     std::vector<uint32_t> previous;    // systems of the phase that this one waits for
-    ThreadOrder start;                 // from whoever launches it
     std::atomic<uint32_t> waiting = 0; // of `previous`, still to finish in this run
     uint32_t place = 0; // among all systems, phase by phase: its place in a run on one thread
     uint64_t lastRun = 0;

@@ -1,10 +1,10 @@
 // Schedule::run(): phases, task graph, versions, and the sync point.
 #include "runtime/ecs/running_system.h"
 #include "runtime/ecs/schedule_node.h"
+#include "runtime/ecs/task_group.h"
 
 #include <chrono>
 #include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
 namespace penumbra::ecs {
 
@@ -41,28 +41,22 @@ void Schedule::runPhase(const Phase& phase, Stamp base)
         return;
     }
 
-    ThreadOrder end;
-    tbb::task_group group;
-    const std::function<void(uint32_t)> launch = [&](uint32_t index) {
-        Node& launched = *m_systems[index];
-        launched.start.release();
-        group.run([&, at = &launched] {
-            Node& node = *at;
-            node.start.acquire();
-            runSystem(node, base);
-            end.release();
-            for (const uint32_t next : node.next)
-                if (m_systems[next]->waiting.fetch_sub(1, std::memory_order_acq_rel) == 1)
-                    launch(next);
-        });
+    TaskGroup* group = nullptr;
+    auto runThenNext = [&](uint32_t index) {
+        Node& node = *m_systems[index];
+        runSystem(node, base);
+        for (const uint32_t next : node.next)
+            if (m_systems[next]->waiting.fetch_sub(1, std::memory_order_acq_rel) == 1)
+                group->start(next);
     };
+    TaskGroup tasks(static_cast<uint32_t>(m_systems.size()), runThenNext);
+    group = &tasks;
     for (const uint32_t index : phase.systems)
         m_systems[index]->waiting = static_cast<uint32_t>(m_systems[index]->previous.size());
     for (const uint32_t index : phase.systems)
         if (m_systems[index]->previous.empty())
-            launch(index);
-    group.wait();
-    end.acquire();
+            tasks.start(index);
+    tasks.wait();
 }
 
 PlaybackStatistics Schedule::run()

@@ -113,7 +113,7 @@ private:
     World& m_world;
     CommandBuffer& m_commands;
     std::string_view m_name;
-    const Access& m_access;
+    [[maybe_unused]] const Access& m_access; // asserts of debug builds
     Stamp m_stamp;
     uint64_t m_lastRun;
     mutable uint64_t m_rows = 0; // several threads count

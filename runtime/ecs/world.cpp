@@ -20,9 +20,19 @@ World::~World()
 {
     for (const Archetype* archetype : m_archetypes)
         delete archetype;
+    dropQueries();
     delete m_index;
     delete m_observers;
     delete m_destroyed;
+}
+
+void World::dropQueries()
+{
+    for (QueryCache**& page : m_queryPages) {
+        for (uint32_t i = 0; page != nullptr && i < kQueriesPerPage; ++i)
+            delete page[i];
+        delete[] std::exchange(page, nullptr);
+    }
 }
 
 Archetype& World::archetypeOf(const ComponentMask& mask)
@@ -43,25 +53,20 @@ Archetype& World::findArchetype(const ComponentSet& set)
     return *(m_bySet[set.slot] = &archetypeOf(set.mask));
 }
 
-const QueryCache& World::cacheOf(uint32_t querySlot) const
+const QueryCache& World::findCache(uint32_t querySlot) const
 {
-    PENUMBRA_ASSERT(querySlot < kQueryPages * kQueriesPerPage, "{} kinds of query", querySlot);
-    auto& page = m_index->queries[querySlot / kQueriesPerPage];
-    const uint32_t at = querySlot % kQueriesPerPage;
-    if (const auto* known = page.load(std::memory_order_acquire))
-        if (const QueryCache* cache = known[at].load(std::memory_order_acquire))
-            if (cache->isCurrent(m_archetypes.size())) [[likely]]
-                return *cache;
     const std::lock_guard lock(m_index->queryMutex);
+    QueryCache**& page = m_queryPages[querySlot / kQueriesPerPage];
     if (page == nullptr)
-        page = new std::atomic<QueryCache*>[kQueriesPerPage] {};
-    std::atomic<QueryCache*>& cache = page[at];
+        __atomic_store_n(
+            &page, new QueryCache* [kQueriesPerPage] {}, __ATOMIC_RELEASE);
+    QueryCache*& cache = page[querySlot % kQueriesPerPage];
     if (cache == nullptr) {
         auto made = std::make_unique<QueryCache>(queryTerms(querySlot));
         made->extend(m_archetypes);
-        cache = made.release();
+        __atomic_store_n(&cache, made.release(), __ATOMIC_RELEASE);
     }
-    cache.load()->extend(m_archetypes);
+    cache->extend(m_archetypes);
     return *cache;
 }
 
@@ -125,6 +130,11 @@ bool World::setParent(Entity child, Entity parent)
         return false;
     add(child, Parent{parent});
     return true;
+}
+
+void World::clearParent(Entity child)
+{
+    remove<Parent>(child);
 }
 
 const Hierarchy& World::hierarchy()

@@ -118,7 +118,7 @@ public:
     // --- Hierarchy: hierarchy.h.
     // False, and nothing changed, if `child` is `parent` or above it.
     [[nodiscard]] bool setParent(Entity child, Entity parent);
-    void clearParent(Entity child) { remove<Parent>(child); }
+    void clearParent(Entity child);
     [[nodiscard]] const Hierarchy& hierarchy();
 
     // --- Versions. Writes are stamped with version(); to look for changes, keep version(), then
@@ -171,6 +171,8 @@ private:
     }
     Archetype& findArchetype(const ComponentSet& set);
     [[nodiscard]] const QueryCache& cacheOf(uint32_t querySlot) const;
+    [[nodiscard]] const QueryCache& findCache(uint32_t querySlot) const;
+    void dropQueries();
     // Room for `more` rows. After it, nothing throws that puts rows in.
     void makeRoom(Archetype& archetype, uint32_t more)
     {
@@ -211,6 +213,10 @@ private:
     // they were there `before`; `removed` ones are about to go.
     void tellGiven(std::span<const Entity> entities, const ComponentMask& before,
                    const ComponentMask& given);
+    void tellCreated(Entity entity, const ComponentMask& given) // by value: none has an address
+    {
+        tellGiven({&entity, 1}, {}, given);
+    }
     void tellRemoved(std::span<const Entity> entities, const ComponentMask& removed);
     void settleObservers();
     [[nodiscard]] bool isTelling() const;
@@ -252,7 +258,8 @@ private:
     template <class T>
     [[nodiscard]] Entity singletonEntity() const;
 
-    struct Index; // archetypes by their components, queries, a lock: what needs heavy headers
+    struct Index; // archetypes by their components, a lock: what needs heavy headers
+    static constexpr uint32_t kQueriesPerPage = 64;
 
     EntityTable m_entities;
     std::vector<Archetype*> m_archetypes; // owned, in the order they were made; 0 is empty
@@ -269,6 +276,8 @@ private:
     DestroyedLog* m_destroyed = nullptr;  // owned; null: not wanted
 
     mutable uint32_t m_iterating = 0; // debug builds; several threads count
+    // Queries by slot, in pages that never move: systems look theirs up without a lock. Owned.
+    mutable std::array<QueryCache**, kMaxQueries / kQueriesPerPage> m_queryPages{};
 };
 
 } // namespace penumbra::ecs

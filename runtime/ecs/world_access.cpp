@@ -26,7 +26,8 @@ void WorldAccess::replace(Contents&& contents, uint64_t version)
     generations.reserve(contents.records.size());
     for (const Contents::Record& record : contents.records)
         generations.push_back(record.generation);
-    delete std::exchange(m_world.m_index, new World::Index); // with all queries
+    m_world.dropQueries();
+    m_world.m_index->byMask.clear();
     for (const Archetype* archetype : m_world.m_archetypes)
         delete archetype;
     m_world.m_archetypes.clear();

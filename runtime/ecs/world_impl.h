@@ -57,7 +57,7 @@ inline World::NewRow World::createIn(const ComponentSet& set)
     m_entities.reserve(1);
     const Entity entity = m_entities.allocate();
     const uint32_t row = archetype.append(entity, m_stamp);
-    m_entities.setPlace(entity, archetype.pages[row >> kPageShift], row);
+    m_entities.setFirstPlace(entity, archetype.pages[row >> kPageShift], row);
     return {&archetype, row, entity};
 }
 
@@ -74,19 +74,13 @@ struct Incoming {
             // Known since the archetype was looked for.
             const auto column = static_cast<size_t>(place.columnOf[kKnownId<T> - 1]);
             if constexpr (kIsPlain<T>) {
-                [&]<size_t... lane>(std::index_sequence<lane...>)
-                {
-                    (std::memcpy(place.block + place.columns[column + lane].offset +
-                                     place.row * sizeof(Lane<T>),
-                                 reinterpret_cast<const std::byte*>(&value) +
-                                     lane * sizeof(Lane<T>),
-                                 sizeof(Lane<T>)),
-                     ...);
-                }
-                (std::make_index_sequence<kLaneCount<T>>());
+                using Lanes = std::array<Lane<T>, kLaneCount<T>>;
+                const Lanes lanes = std::bit_cast<Lanes>(value);
+                for (size_t lane = 0; lane < lanes.size(); ++lane)
+                    new (place.columns[column + lane] + place.row * sizeof(Lane<T>))
+                        Lane<T>(lanes[lane]);
             } else {
-                T* at =
-                    reinterpret_cast<T*>(place.block + place.columns[column].offset) + place.row;
+                T* at = reinterpret_cast<T*>(place.columns[column]) + place.row;
                 if (over)
                     at->~T();
                 new (at) T(static_cast<T&&>(value));
@@ -124,7 +118,7 @@ Entity World::create(Ts&&... values)
     if constexpr (kHasParent)
         attachOrFail(made.entity, parentIn(values...));
     if (m_observers != nullptr) [[unlikely]]
-        tellGiven({&made.entity, 1}, {}, set.mask);
+        tellCreated(made.entity, set.mask);
     return made.entity;
 }
 
@@ -256,6 +250,17 @@ template <class... Ts>
 void World::remove(Entity entity)
 {
     removeSet(entity, componentSet<Ts...>());
+}
+
+inline const QueryCache& World::cacheOf(uint32_t querySlot) const
+{
+    if (QueryCache* const* const page =
+            __atomic_load_n(&m_queryPages[querySlot / kQueriesPerPage], __ATOMIC_ACQUIRE))
+        if (const QueryCache* cache =
+                __atomic_load_n(&page[querySlot % kQueriesPerPage], __ATOMIC_ACQUIRE))
+            if (cache->isCurrent(m_archetypes.size())) [[likely]]
+                return *cache;
+    return findCache(querySlot);
 }
 
 template <class... Terms>

@@ -107,7 +107,7 @@ WorldStatistics World::statistics() const
     // A node of the map: key, value, link, hash; and its bucket.
     all.bookBytes += m_index->byMask.size() * (sizeof(ComponentMask) + 3 * sizeof(void*)) +
                      m_index->byMask.bucket_count() * sizeof(void*);
-    for (const auto& page : m_index->queries) {
+    for (const QueryCache* const* page : m_queryPages) {
         if (page == nullptr)
             continue;
         all.bookBytes += kQueriesPerPage * sizeof(void*);

@@ -50,7 +50,8 @@ T* World::find(Entity entity, Stamp stamp) const
         return nullptr;
     if constexpr (!std::is_const_v<T>)
         at.archetype->markRow(column, at.row, stamp);
-    return reinterpret_cast<T*>(at.archetype->at(column, at.row));
+    return reinterpret_cast<T*>(at.archetype->columnsAt(at.row)[column]) +
+           at.archetype->rowInBlock(at.row);
 }
 
 template <class T>
@@ -96,8 +97,7 @@ T World::value(Entity entity) const
         at.archetype->read(componentId<T>(), at.row, &result);
         return result;
     } else {
-        return *reinterpret_cast<const T*>(
-            at.archetype->at(at.archetype->columnOf(componentId<T>()), at.row));
+        return *find<const T>(entity, {});
     }
 }
 

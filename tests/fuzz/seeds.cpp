@@ -221,6 +221,8 @@ std::vector<FuzzSeed> fuzzSeeds(std::string_view target)
         return radianceSeeds();
     if (target == "open_exr")
         return exrSeeds();
+    if (target == "scene_reader")
+        return sceneSeeds();
     return {};
 }
 

@@ -15,5 +15,6 @@ struct FuzzSeed {
 
 // Of a target of tests/fuzz/targets.h; each is read without an error.
 std::vector<FuzzSeed> fuzzSeeds(std::string_view target);
+std::vector<FuzzSeed> sceneSeeds(); // of scene_reader
 
 } // namespace penumbra

@@ -16,6 +16,7 @@ bool fuzzAssetReader(FuzzInput bytes);       // a compiled mesh asset, encoded a
 bool fuzzEnvironmentReader(FuzzInput bytes); // .env, encoded again to the same bytes
 bool fuzzRadianceHdr(FuzzInput bytes);       // .hdr, made an environment
 bool fuzzOpenExr(FuzzInput bytes);           // .exr, the same
+bool fuzzSceneReader(FuzzInput bytes);       // scene.json, saved and read again
 
 struct FuzzTarget {
     const char* name; // of the program, and of its folders of seeds and regressions
@@ -26,6 +27,7 @@ constexpr FuzzTarget kFuzzTargets[] = {
     {"gltf_reader", fuzzGltfReader},   {"obj_reader", fuzzObjReader},
     {"asset_reader", fuzzAssetReader}, {"environment_reader", fuzzEnvironmentReader},
     {"radiance_hdr", fuzzRadianceHdr}, {"open_exr", fuzzOpenExr},
+    {"scene_reader", fuzzSceneReader},
 };
 
 } // namespace penumbra
