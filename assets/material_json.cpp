@@ -87,8 +87,8 @@ private:
     static void readExtensions(const JsonReader& extensions, SurfaceMaterial& material)
     {
         if (extensions.has(kStrengthExtension))
-            material.emissive *= extensions.member(kStrengthExtension)
-                                     .number("emissiveStrength", 0, kMaxEmissive);
+            material.emissive *=
+                extensions.member(kStrengthExtension).number("emissiveStrength", 0, kMaxEmissive);
         if (!extensions.has(kFieldExtension))
             return;
         const JsonReader ours = extensions.member(kFieldExtension);

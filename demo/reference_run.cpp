@@ -117,8 +117,8 @@ Result<std::vector<vec4>> drawFields(Renderer& renderer, const View& view,
                                      const ReferenceRunOptions& options)
 {
     if (options.cpuScalar) {
-        const CpuFrame cpu = combineOnCpu(Kernel::Literal, renderer.scene().data(),
-                                          renderer.constants(view));
+        const CpuFrame cpu =
+            combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
         if (Result<void> set = renderer.setRadiance(cpu.radiance); !set)
             return set.error();
     }
@@ -176,12 +176,10 @@ Figures measure(const TracedScene& traced, const DemoScene& scene, const Receive
         return shadeReference(traced.scene, {sky, lights}, receivers.receivers,
                               {.samples = samples});
     };
-    const ReferenceRadiance sky =
-        trace(ReferenceLight::fromMap(lit, mat3(1), scene.intensity), {});
+    const ReferenceRadiance sky = trace(ReferenceLight::fromMap(lit, mat3(1), scene.intensity), {});
     const ReferenceRadiance sky4 =
         trace(ReferenceLight::fromSh4(lit.sh4, mat3(1), scene.intensity), {});
-    const ReferenceRadiance local =
-        trace(ReferenceLight::fromMap(lit, mat3(1), 0), traced.lights);
+    const ReferenceRadiance local = trace(ReferenceLight::fromMap(lit, mat3(1), 0), traced.lights);
 
     Figures figures;
     const std::vector<vec3> shadowed = sum(sky.shadowed, local.shadowed);
@@ -194,8 +192,8 @@ Figures measure(const TracedScene& traced, const DemoScene& scene, const Receive
     if (!traced.lights.empty()) {
         figures.byLight["environment"] =
             relative(compareRadiance(testSky, sky.shadowed, sky.unshadowed));
-        figures.byLight["local"] = relative(
-            compareRadiance(sum(test, testSky, -1), local.shadowed, local.unshadowed));
+        figures.byLight["local"] =
+            relative(compareRadiance(sum(test, testSky, -1), local.shadowed, local.unshadowed));
     }
     figures.perReceiver = errorPerReceiver(test, shadowed);
     figures.seconds = sky.seconds + local.seconds;
@@ -216,14 +214,14 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, co
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
     const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, fields.width,
                                  fields.height};
-    const ReferenceLight sky = ReferenceLight::fromMap(
-        scene.ground ? aboveGround(scene.environment) : scene.environment, mat3(1),
-        scene.intensity);
+    const ReferenceLight sky =
+        ReferenceLight::fromMap(scene.ground ? aboveGround(scene.environment) : scene.environment,
+                                mat3(1), scene.intensity);
     // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
     const ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
                                                      {.samples = std::max(samples / 4, 64u)});
-    const Image8 shaded = displayImage(picture.radiance.shadowed, {fields.width, fields.height},
-                                       scene.exposure);
+    const Image8 shaded =
+        displayImage(picture.radiance.shadowed, {fields.width, fields.height}, scene.exposure);
     TracedPicture out{fields, picture.radiance.seconds};
     for (std::size_t i = 0; i < picture.instance.size(); ++i)
         if (picture.instance[i] != kNoInstance)

@@ -16,9 +16,9 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
     m_schedule.add<const Orbit, Transform>(
         "orbits", "simulate", [this](ecs::SystemContext& context) { moveOrbits(context, m_time); });
     m_schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
-                   const RenderLight>(
-        "gather", "extract",
-        [this](ecs::SystemContext& context) { gatherChanged(context, m_changes); });
+                   const RenderLight>("gather", "extract", [this](ecs::SystemContext& context) {
+        gatherChanged(context, m_changes);
+    });
 }
 
 const SceneChanges& Simulation::advance(float seconds)

@@ -11,12 +11,11 @@ Result<void> needField(const ecs::World& world, ecs::Entity entity, const AssetS
     const MeshAsset& mesh = assets.mesh(asset);
     if (mesh.field && mesh.field->kind == kind)
         return {};
-    return Error{fmt::format("{}: '{}' cannot be its {}, it has no {} field; {}",
-                             world.describe(entity), mesh.name, use,
-                             kind == FieldKind::Radiance ? "radiance" : "occlusion",
-                             kind == FieldKind::Radiance
-                                 ? "compile a light description with assetc light"
-                                 : "bake it with assetc bake without --no-field")};
+    return Error{
+        fmt::format("{}: '{}' cannot be its {}, it has no {} field; {}", world.describe(entity),
+                    mesh.name, use, kind == FieldKind::Radiance ? "radiance" : "occlusion",
+                    kind == FieldKind::Radiance ? "compile a light description with assetc light"
+                                                : "bake it with assetc bake without --no-field")};
 }
 
 template <class Component>

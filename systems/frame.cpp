@@ -183,8 +183,9 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
             {.shader = "instance_update.comp", .bindings = scene, .pushBytes = 4});
     compute(passes.clusterCull, {.shader = "cluster_cull.comp", .bindings = scene});
     compute(passes.entitySort, {.shader = "entity_sort.comp", .bindings = scene});
-    compute(passes.combineLiteral,
-            {.shader = "combine_literal.comp", .bindings = scene, .constants = {0, 0, selfScale, lights}});
+    compute(passes.combineLiteral, {.shader = "combine_literal.comp",
+                                    .bindings = scene,
+                                    .constants = {0, 0, selfScale, lights}});
     compute(passes.combineExact,
             {.shader = "combine_exact.comp",
              .bindings = scene,

@@ -25,7 +25,8 @@ struct SphereRule {
             for (int iteration = 0; iteration < 20; ++iteration) {
                 double previous = 1, value = z;
                 for (int l = 2; l <= kRows; ++l)
-                    previous = std::exchange(value, ((2 * l - 1) * z * value - (l - 1) * previous) / l);
+                    previous =
+                        std::exchange(value, ((2 * l - 1) * z * value - (l - 1) * previous) / l);
                 slope = kRows * (z * value - previous) / (z * z - 1);
                 z -= value / slope;
             }

@@ -19,7 +19,8 @@ Canvas textureOf(const LightPicture& picture, float white)
     Canvas canvas(static_cast<int>(width), static_cast<int>(height));
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
-            const std::uint32_t x0 = x * picture.width / width, x1 = (x + 1) * picture.width / width;
+            const std::uint32_t x0 = x * picture.width / width,
+                                x1 = (x + 1) * picture.width / width;
             const std::uint32_t y0 = y * picture.height / height,
                                 y1 = (y + 1) * picture.height / height;
             glm::dvec3 sum(0);
@@ -58,7 +59,7 @@ float paintLight(MeshAsset& mesh, const LightSpec& spec, const LightPicture* pic
     for (const vec3& pixel : picture->pixels)
         white = std::max({white, pixel.r, pixel.g, pixel.b});
     mesh.images.push_back({ImageType::Png, encodePng(textureOf(*picture, white))});
-    MeshTexture texture; // … but for its picture
+    MeshTexture texture;                   // … but for its picture
     texture.wrapS = texture.wrapT = 33071; // clamped: the edges do not blend into each other
     mesh.materials.front().textures[kEmissiveTexture] = texture;
     return white;

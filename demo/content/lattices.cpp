@@ -56,8 +56,8 @@ ContentMesh makeRoundedCube()
 ContentMesh makePanel()
 {
     // A floor of its own, stood up: its top looks along +z.
-    ContentMesh mesh = makeFloor(
-        {.width = 0.96f, .depth = 0.6f, .thickness = 0.02f, .cellsX = 16, .cellsZ = 10});
+    ContentMesh mesh =
+        makeFloor({.width = 0.96f, .depth = 0.6f, .thickness = 0.02f, .cellsX = 16, .cellsZ = 10});
     mesh.name = "panel";
     for (vec3& p : mesh.positions)
         p = vec3(p.x, -p.z, p.y - 0.001f);

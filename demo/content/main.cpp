@@ -36,9 +36,10 @@ int main(int argc, char** argv)
     const bool picture = name == "picture";
     if ((shape == nullptr && !picture) || output.empty()) {
         fmt::print(stderr, "penumbra-content: {}\n",
-                   name.empty()       ? "no SHAPE given; --list shows the shapes"
-                   : shape == nullptr && !picture ? "no shape is called " + name + "; --list shows the shapes"
-                                      : "no file given; add -o FILE");
+                   name.empty() ? "no SHAPE given; --list shows the shapes"
+                   : shape == nullptr && !picture
+                       ? "no shape is called " + name + "; --list shows the shapes"
+                       : "no file given; add -o FILE");
         return 2;
     }
     const Result<void> written =

@@ -20,8 +20,8 @@ ContentMesh makeBowlingPin();  // 0.38 m high: a real one
 ContentMesh makeHexNut();      // 0.3 m across the corners, threaded, lying flat
 ContentMesh makeSpring();      // 0.32 m high, standing
 
-ContentMesh makeBall();        // a sphere of radius 0.18 m
-ContentMesh makePanel();       // 0.96 x 0.6 m, 2 cm thick, its front 1 mm behind z = 0
+ContentMesh makeBall();  // a sphere of radius 0.18 m
+ContentMesh makePanel(); // 0.96 x 0.6 m, 2 cm thick, its front 1 mm behind z = 0
 
 // A plate whose top, at y = 0, is a grid of vertices that can show shadows.
 struct FloorShape {

@@ -28,10 +28,10 @@ ContentMesh makeChessPawn()
 ContentMesh makeBall()
 {
     constexpr float kRadius = 0.18f;
-    Profile p({0, -kRadius}, 0.015f);
+    Profile p({0, -kRadius}, 0.0118f);
     p.arcTo({0, 0}, {kRadius, 0}).arcTo({0, 0}, {0, kRadius});
     MeshBuilder builder;
-    builder.addSkin(latheRings(p.points(), 48), false);
+    builder.addSkin(latheRings(p.points(), 60), false);
     return builder.finish("ball", 40);
 }
 

@@ -30,8 +30,7 @@ Result<AreaLight> AreaLight::make(std::uint32_t index, const ReferenceInstance& 
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t v = mesh.indices[submesh.firstIndex + i + k];
                 triangle.corners[k] = vec3(instance.worldFromObject * vec4(mesh.positions[v], 1));
-                triangle.texcoords[k] =
-                    mesh.texcoords0.empty() ? vec2(0) : mesh.texcoords0[v];
+                triangle.texcoords[k] = mesh.texcoords0.empty() ? vec2(0) : mesh.texcoords0[v];
             }
             const vec3 normal = cross(triangle.corners[1] - triangle.corners[0],
                                       triangle.corners[2] - triangle.corners[0]);
@@ -99,16 +98,16 @@ AreaLight::Emission AreaLight::emission(std::uint32_t index, vec2 b, vec3 direct
         const std::array<vec2, 3>& t = triangle.texcoords;
         const vec2 uv = (1.0f - b.x - b.y) * t[0] + b.x * t[1] + b.y * t[2];
         const auto pixel = [](float at, std::uint32_t side) {
-            return std::min(static_cast<std::uint32_t>(clamp(at, 0.0f, 1.0f) *
-                                                       static_cast<float>(side)),
-                            side - 1);
+            return std::min(
+                static_cast<std::uint32_t>(clamp(at, 0.0f, 1.0f) * static_cast<float>(side)),
+                side - 1);
         };
         radiance *= surface.texture[std::size_t{pixel(uv.y, surface.height)} * surface.width +
                                     pixel(uv.x, surface.width)];
     }
     if (surface.cosOuter > 0.0f) { // intensity I(a) of KHR_lights_punctual, over the cosine
-        const float t = clamp((cosine - surface.cosOuter) / (surface.cosInner - surface.cosOuter),
-                              0.0f, 1.0f);
+        const float t =
+            clamp((cosine - surface.cosOuter) / (surface.cosInner - surface.cosOuter), 0.0f, 1.0f);
         radiance *= t * t / cosine;
     }
     return {radiance, cosine};

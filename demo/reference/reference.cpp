@@ -54,7 +54,8 @@ private:
         std::array<vec3, ShadowPacket::kSize> contributions{};
     };
 
-    void add(Pending& pending, Point& point, vec3 direction, float distance, vec3 contribution) const
+    void add(Pending& pending, Point& point, vec3 direction, float distance,
+             vec3 contribution) const
     {
         point.unshadowed += glm::dvec3(contribution);
         const int lane = pending.packet.count++;
@@ -92,8 +93,8 @@ private:
     }
 
     // The surface's area over the number of points, seen from the receiver.
-    void addLight(Pending& pending, Point& point, const Reflectance& reflectance,
-                  std::size_t index, std::size_t l) const
+    void addLight(Pending& pending, Point& point, const Reflectance& reflectance, std::size_t index,
+                  std::size_t l) const
     {
         const AreaLight& light = m_lighting.lights[l];
         const float area = light.area() / static_cast<float>(2 * m_points.size());

@@ -191,8 +191,9 @@ ReferenceHit ReferenceScene::closest(vec3 origin, vec3 direction) const
     normal = dot(normal, normal) > 0.0f ? normalize(normal) : face;
     if (dot(face, normal) < 0.0f)
         face = -face;
-    return {true,     origin + query.ray.tfar * direction, normal,    face,
-            instance, query.hit.primID,                    vec2(u, v)};
+    return {
+        true,      origin + query.ray.tfar * direction, normal, face, instance, query.hit.primID,
+        vec2(u, v)};
 }
 
 const std::vector<MeshMaterial>& ReferenceScene::materials() const

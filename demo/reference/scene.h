@@ -25,7 +25,8 @@ struct ShadowPacket {
     vec3 origin{0}; // world
     int count = 0;
     std::array<vec3, kSize> directions{};
-    std::array<float, kSize> distances{}; // how far to look, in lengths of the direction; may be infinite
+    std::array<float, kSize>
+        distances{}; // how far to look, in lengths of the direction; may be infinite
     std::array<bool, kSize> visible{};
 };
 

@@ -1,6 +1,6 @@
-// What a frame knows of an instance, a light, a field, a cluster and itself: the structs that CPU and GPU
-// share, and the maths that turns a transform into the constants of the combine kernels. Layout:
-// scalar; offsets checked in tests/systems.
+// What a frame knows of an instance, a light, a field, a cluster and itself: the structs that CPU
+// and GPU share, and the maths that turns a transform into the constants of the combine kernels.
+// Layout: scalar; offsets checked in tests/systems.
 #ifndef PENUMBRA_SHADERS_SHARED_INSTANCE_H
 #define PENUMBRA_SHADERS_SHARED_INSTANCE_H
 #include "shaders/shared/field.h"
@@ -31,8 +31,8 @@ struct InstanceInput {
     vec3 albedo;         // linear Rec. 709; of a light, the factor of its field
     float glossFraction; // part of the reflectance in the Phong lobe
     float glossExponent;
-    uint field;    // index of a FieldInput, kNoField: not an occluder
-    uint owner;    // of a light: the instance that is its surface, kNoOwner: none
+    uint field; // index of a FieldInput, kNoField: not an occluder
+    uint owner; // of a light: the instance that is its surface, kNoOwner: none
     float padding0;
     vec3 emission; // radiance of the surface itself, W/(m² sr)
     float padding1;
@@ -105,7 +105,7 @@ struct FrameConstants {
     vec4 lightNodes[32]; // environment radiance at kShNodes times the node's weight; w unused
     vec4 light[16];      // environment radiance in SH
     uint clusterCount;
-    uint instanceCount;  // the rows of lights follow those of instances
+    uint instanceCount; // the rows of lights follow those of instances
     uint lightCount;
     uint denseRotations; // 1: instance_update writes the matrices of kernel literal too
     float backgroundIntensity;

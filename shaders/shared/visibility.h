@@ -38,8 +38,8 @@ PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cuto
 }
 
 // How much a sphere counts for one receiver: 0 once it lies under the receiver's horizon, where the
-// products of order 4 would still leak, 1 from where its centre has risen; so what belowHorizon drops
-// had no weight. to = its centre - the receiver.
+// products of order 4 would still leak, 1 from where its centre has risen; so what belowHorizon
+// drops had no weight. to = its centre - the receiver.
 PENUMBRA_FN float horizonWeight(vec3 normal, vec3 to, float sphereRadius)
 {
     const float t = clamp(1.0f + dot(normal, to) / sphereRadius, 0.0f, 1.0f);

@@ -59,7 +59,8 @@ class WorldPrinter:
         return [p.dereference() for p in vector_items(self.value["m_archetypes"])]
 
     def to_string(self):
-        count = int(self.value["m_entities"]["m_count"])
+        table = self.value["m_entities"]
+        count = vector_size(table["m_records"]) - int(table["m_freeCount"]) - int(table["m_retired"])
         version = int(self.value["m_stamp"]["version"])
         return f"World of {count} entities, {len(self.archetypes())} archetypes, version {version}"
 

@@ -63,9 +63,9 @@ struct LiteralProduct {
     {
         const FieldEntity entity = instanceField(rows.instances[row]);
         const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
-        const Sh4 visibility = fieldVisibility(
-            sampleTrilinear(scene.fieldSamples, cell.sample0, cell, entity.grid),
-            entity.bandScale * (weight * cell.decay));
+        const Sh4 visibility =
+            fieldVisibility(sampleTrilinear(scene.fieldSamples, cell.sample0, cell, entity.grid),
+                            entity.bandScale * (weight * cell.decay));
         return shProduct(shRotateDense(visibility, rows.dense[row]), transfer);
     }
 
@@ -147,15 +147,15 @@ Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& 
         for (std::uint32_t bits = light.possible; bits != 0; bits &= bits - 1) {
             const std::uint32_t row =
                 entities.occluders[static_cast<std::size_t>(std::countr_zero(bits))];
-            const float order = orderWeight(product.rows.instances[row].sphere, source.sphere,
-                                            product.position);
+            const float order =
+                orderWeight(product.rows.instances[row].sphere, source.sphere, product.position);
             through = product.occlude(through, row, order * risen(row));
         }
         sum += risen(light.row) * vec3(source.material) * product.lightThrough(through, light.row);
     }
     for (; next < entities.occluders.size(); ++next)
-        transfer = product.occlude(transfer, entities.occluders[next],
-                                   risen(entities.occluders[next]));
+        transfer =
+            product.occlude(transfer, entities.occluders[next], risen(entities.occluders[next]));
     return transfer;
 }
 
@@ -191,16 +191,14 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
         std::uint32_t certain = 0, possible = 0;
         for (std::uint32_t i = 0; i < occluders.size(); ++i) {
             const bool own = out.occluders[i] + 1 == static_cast<std::uint32_t>(g.material1.z);
-            const float weight =
-                own ? 0
-                    : orderWeightAround(rows.instances[out.occluders[i]].sphere, g.sphere, s.center,
-                                        s.radius);
+            const float weight = own ? 0
+                                     : orderWeightAround(rows.instances[out.occluders[i]].sphere,
+                                                         g.sphere, s.center, s.radius);
             possible |= weight > 0 ? 1u << i : 0u;
             certain += certain == i && weight == 1 ? 1u : 0u;
         }
         before = std::min(before, certain);
-        out.lights[l] = {lights[l].second, before,
-                         before < 32 ? possible >> before << before : 0u};
+        out.lights[l] = {lights[l].second, before, before < 32 ? possible >> before << before : 0u};
     }
     return out;
 }
@@ -231,7 +229,8 @@ std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstan
             std::any_of(std::begin(frame.frustum), std::end(frame.frustum), [&](const vec4& plane) {
                 return sphereOutside(plane, s.center, s.radius);
             });
-        if (!outside && !facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
+        if (!outside &&
+            !facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
             visible.push_back(sortEntities(scene, instances, c, s));
     }
     return visible;
@@ -258,14 +257,14 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);
         } else {
-            const ShNodal transfer =
-                walk(ExactProduct{scene, instances, receiver.position, receiver.normal},
-                     transferNodal(shRotate(ownVisibility, worldFromObject), receiver), entities,
-                     sum);
+            const ShNodal transfer = walk(
+                ExactProduct{scene, instances, receiver.position, receiver.normal},
+                transferNodal(shRotate(ownVisibility, worldFromObject), receiver), entities, sum);
             for (int n = 0; n < 32; ++n)
                 sum += transfer.v[n] * vec3(frame.lightNodes[n]);
         }
-        radiance[cluster.firstRadiance + v] = vec4(vec3(self.material) * sum + vec3(self.emission), 1);
+        radiance[cluster.firstRadiance + v] =
+            vec4(vec3(self.material) * sum + vec3(self.emission), 1);
     }
 }
 

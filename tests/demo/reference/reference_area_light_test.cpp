@@ -33,7 +33,8 @@ vec3 reflected(const MeshAsset& light, float height, std::span<const ReferenceIn
     EXPECT_TRUE(scene);
     EXPECT_TRUE(area);
     const ReferenceLight dark = ReferenceLight::fromMap(test::uniformSky(vec3(0)));
-    const ReferenceReceiver receiver{vec3(0, height, 0), vec3(0, -1, 0), vec3(0, -1, 0), 0, kNoInstance};
+    const ReferenceReceiver receiver{vec3(0, height, 0), vec3(0, -1, 0), vec3(0, -1, 0), 0,
+                                     kNoInstance};
     return shadeReference(*scene, {dark, std::span(&*area, 1)}, std::span(&receiver, 1),
                           {.samples = 4096})
         .shadowed[0];
@@ -86,8 +87,10 @@ TEST(AreaLight, PictureLiesAsItsTextureCoordinatesSay)
     const Result<AreaLight> area = AreaLight::make(0, {&light, mat4(1), 0}, vec3(1));
     ASSERT_TRUE(area);
     for (int i = 0; i < 64; ++i) {
-        const AreaLight::Sample sample = area->sample(vec2((static_cast<float>(i) + 0.5f) / 64, 0.37f));
-        const AreaLight::Emission e = area->emission(sample.triangle, sample.barycentric, vec3(0, 1, 0));
+        const AreaLight::Sample sample =
+            area->sample(vec2((static_cast<float>(i) + 0.5f) / 64, 0.37f));
+        const AreaLight::Emission e =
+            area->emission(sample.triangle, sample.barycentric, vec3(0, 1, 0));
         EXPECT_EQ(e.radiance, sample.position.x < 0 ? vec3(2, 0, 0) : vec3(0)) << sample.position.x;
     }
     EXPECT_NEAR(area->area(), 4, 1e-5);
@@ -103,8 +106,8 @@ TEST(AreaLight, SpotFollowsItsCone)
     for (const float angle : {0.0f, 0.19f, 0.4f, 0.61f}) {
         const vec3 direction(std::sin(angle), std::cos(angle), 0);
         const AreaLight::Emission e = area->emission(0, vec2(0.3f), direction);
-        const float t = clamp((std::cos(angle) - std::cos(0.6f)) / (std::cos(0.2f) - std::cos(0.6f)),
-                              0.0f, 1.0f);
+        const float t = clamp(
+            (std::cos(angle) - std::cos(0.6f)) / (std::cos(0.2f) - std::cos(0.6f)), 0.0f, 1.0f);
         EXPECT_NEAR(e.radiance.x * e.cosine, t * t, 1e-5f) << angle;
     }
 }

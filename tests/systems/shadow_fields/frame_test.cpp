@@ -70,8 +70,7 @@ protected:
         std::vector<vec4> cpu(scene.data.radianceCount);
         double sum = 0, largest = 0, difference = 0;
         std::size_t count = 0;
-        for (const ClusterEntities& cluster :
-             cullAndSort(scene.data, instances, scene.constants)) {
+        for (const ClusterEntities& cluster : cullAndSort(scene.data, instances, scene.constants)) {
             combineCluster(kernel, scene.data, instances, scene.constants, cluster, cpu);
             for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
                 const std::size_t i = scene.data.clusters[cluster.cluster].firstRadiance + v;
@@ -115,7 +114,7 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
     const std::vector<ClusterEntities> twin =
         cullAndSort(scene.data, updateInstances(scene.data), scene.constants);
     EXPECT_LT(twin.size(), scene.data.clusters.size()); // something is culled …
-    ASSERT_GT(twin.size(), 10u);                          // … and not everything
+    ASSERT_GT(twin.size(), 10u);                        // … and not everything
     ASSERT_EQ(drawn.visible.size(), twin.size());
     std::map<std::uint32_t, std::size_t> slotOf;
     for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
@@ -123,8 +122,7 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
     std::uint32_t pairs = 0, before = 0, possible = 0;
     for (const ClusterEntities& cluster : twin) {
         ASSERT_TRUE(slotOf.contains(cluster.cluster));
-        const std::uint32_t* list =
-            &drawn.lists[slotOf[cluster.cluster] * kListStride];
+        const std::uint32_t* list = &drawn.lists[slotOf[cluster.cluster] * kListStride];
         const std::uint32_t* const occluders = list + kListOccluders;
         EXPECT_EQ(std::vector<std::uint32_t>(occluders, occluders + list[0]), cluster.occluders);
         pairs += list[0];
@@ -138,7 +136,7 @@ TEST_F(FrameTest, CullAndSortEqualTwin)
             possible += light.possible != 0;
         }
     }
-    EXPECT_GT(before, 0u); // some occluders stand before a light for certain …
+    EXPECT_GT(before, 0u);   // some occluders stand before a light for certain …
     EXPECT_GT(possible, 0u); // … and some only for a part of the receivers
     EXPECT_EQ(drawn.cull.pairs, pairs);
     EXPECT_GT(pairs, twin.size()); // more than one occluder per cluster

@@ -35,9 +35,9 @@ constexpr Kernel kKernels[] = {Kernel::Literal, Kernel::Exact};
 // Of the first `count` receivers: the radiance of channel 0.
 std::pair<float, float> range(std::span<const vec4> radiance, std::size_t count)
 {
-    const auto [low, high] = std::minmax_element(
-        radiance.begin(), radiance.begin() + static_cast<std::ptrdiff_t>(count),
-        [](const vec4& a, const vec4& b) { return a.x < b.x; });
+    const auto [low, high] =
+        std::minmax_element(radiance.begin(), radiance.begin() + static_cast<std::ptrdiff_t>(count),
+                            [](const vec4& a, const vec4& b) { return a.x < b.x; });
     return {low->x, high->x};
 }
 
@@ -52,8 +52,7 @@ TEST(Energy, AUniformSkyGivesTheAlbedoAtAnyRotation)
                   {});
         for (const Kernel kernel : kKernels) {
             const auto [low, high] = range(
-                shadeAll(kernel, scene, frameConstants({}, uniformLight(1), 1)),
-                scene.vertexCount);
+                shadeAll(kernel, scene, frameConstants({}, uniformLight(1), 1)), scene.vertexCount);
             EXPECT_NEAR(low, 0.37f, 0.005f * 0.37f) << kernelName(kernel);
             EXPECT_NEAR(high, 0.37f, 0.005f * 0.37f) << kernelName(kernel);
         }
@@ -126,9 +125,8 @@ TEST(Invariance, RotatingTheWholeSceneChangesNothing)
         upright.view, rotatedLight(environmentLight(upright.environment, 1), matrix), 1);
     turned.constants.eye = vec4(matrix * vec3(upright.constants.eye), 1);
     for (const Kernel kernel : kKernels) {
-        const Change change =
-            changeOf(shadeAll(kernel, upright.data, upright.constants),
-                     shadeAll(kernel, turned.data, turned.constants));
+        const Change change = changeOf(shadeAll(kernel, upright.data, upright.constants),
+                                       shadeAll(kernel, turned.data, turned.constants));
         EXPECT_LT(change.rms, 0.0025 * change.mean) << kernelName(kernel);
         EXPECT_LT(change.largest, (kernel == Kernel::Literal ? 0.005 : 0.05) * change.mean)
             << kernelName(kernel);
@@ -163,7 +161,8 @@ TEST(Invariance, TheOrderOfTwoDisjointOccludersHardlyMatters)
         const float brightest = range(near, near.size()).second;
         EXPECT_GT(brightest, 0.5f);
         EXPECT_LT(changeOf(near, far).largest, 0.01 * brightest) << kernelName(kernel);
-        RecordProperty(std::string(kernelName(kernel)), std::to_string(changeOf(near, far).largest / brightest));
+        RecordProperty(std::string(kernelName(kernel)),
+                       std::to_string(changeOf(near, far).largest / brightest));
     }
 }
 
@@ -185,8 +184,7 @@ protected:
         for (int i = 0; i <= steps; ++i) {
             const vec3 at = from + 0.001f * static_cast<float>(i) * normalize(to - from);
             const SceneData scene = build(assets, {floor, ball}, {{.asset = 2, .position = at}});
-            std::vector<vec4> now =
-                shadeAll(GetParam(), scene, frameConstants({}, LightSh{}, 0));
+            std::vector<vec4> now = shadeAll(GetParam(), scene, frameConstants({}, LightSh{}, 0));
             now.resize(scene.firstRadiance[1]); // the floor
             if (!last.empty()) {
                 const Change change = changeOf(now, last);

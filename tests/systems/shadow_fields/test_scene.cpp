@@ -35,8 +35,8 @@ MeshAsset makeLight(const Emitter& emitter, float innerRadius, MeshAsset mesh, v
     mesh = finish(std::move(mesh), false);
     Progress progress("test");
     mesh.field = quantiseField(bakeLightField(
-        emitter,
-        {.shells = 14, .side = 17, .innerRadius = innerRadius, .outerRadius = 16}, progress));
+        emitter, {.shells = 14, .side = 17, .innerRadius = innerRadius, .outerRadius = 16},
+        progress));
     mesh.materials.resize(1);
     mesh.materials[0].emissive = radiance;
     return mesh;
