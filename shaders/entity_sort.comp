@@ -15,31 +15,31 @@
 
 layout(local_size_x = kSortGroup) in;
 
-// Nearest rows so far, and how many there were.
-struct Nearest {
-    float key[kMaxClusterOccluders];
-    uint row[kMaxClusterOccluders];
-    uint count, dropped;
-};
+layout(constant_id = 3) const bool kLocalLights = true;
 
-void insert(inout Nearest near, uint limit, float key, uint row)
-{
-    uint at = near.count;
-    if (near.count == limit) {
-        ++near.dropped;
-        if (near.key[limit - 1u] <= key)
-            return;
-        --at;
-    } else {
-        ++near.count;
+// Keeps the nearest `limit` rows in order. Private arrays: as parameters they would be copied.
+float occluderKey[kMaxClusterOccluders], lightKey[kMaxClusterLights];
+uint occluderRow[kMaxClusterOccluders], lightRow[kMaxClusterLights];
+uint occluders = 0u, lights = 0u, dropped = 0u;
+
+#define PENUMBRA_INSERT(keys, rows, count, limit, key, row)                                                            \
+    {                                                                                                                  \
+        uint at = min(count, limit);                                                                                   \
+        if (count == limit) {                                                                                          \
+            ++dropped;                                                                                                 \
+            at = keys[limit - 1u] <= key ? limit : limit - 1u;                                                         \
+        } else {                                                                                                       \
+            ++count;                                                                                                   \
+        }                                                                                                              \
+        if (at < limit) {                                                                                              \
+            for (; at > 0u && keys[at - 1u] > key; --at) {                                                             \
+                keys[at] = keys[at - 1u];                                                                              \
+                rows[at] = rows[at - 1u];                                                                              \
+            }                                                                                                          \
+            keys[at] = key;                                                                                            \
+            rows[at] = row;                                                                                            \
+        }                                                                                                              \
     }
-    for (; at > 0u && near.key[at - 1u] > key; --at) {
-        near.key[at] = near.key[at - 1u];
-        near.row[at] = near.row[at - 1u];
-    }
-    near.key[at] = key;
-    near.row[at] = row;
-}
 
 void main()
 {
@@ -54,44 +54,43 @@ void main()
     const vec3 axis =
         linear(self.worldFromObject0, self.worldFromObject1, self.worldFromObject2, b.vertices.xyz) / self.material1.y;
 
-    Nearest occluders, lights;
-    occluders.count = occluders.dropped = lights.count = lights.dropped = 0u;
-    for (uint i = 0u; i < frame.instanceCount + frame.lightCount; ++i) {
+    const uint rows = frame.instanceCount + (kLocalLights ? frame.lightCount : 0u);
+    for (uint i = 0u; i < rows; ++i) {
         const GpuInstance g = loadInstance(i);
-        const bool light = i >= frame.instanceCount;
         const vec3 to = g.sphere.xyz - center;
         if (g.grid.w == 0.0 || length(to) - radius > g.grid.w || belowHorizon(to, g.sphere.w, axis, b.vertices.w, radius))
             continue;
-        if (light) {
+        const float key = powerDistance(g.sphere, center);
+        if (kLocalLights && i >= frame.instanceCount) {
             if (uint(int(g.material1.z)) != cluster.instance + 1u)
-                insert(lights, kMaxClusterLights, powerDistance(g.sphere, center), i);
+                PENUMBRA_INSERT(lightKey, lightRow, lights, kMaxClusterLights, key, i)
         } else if (i != cluster.instance) {
-            insert(occluders, kMaxClusterOccluders, powerDistance(g.sphere, center), i);
+            PENUMBRA_INSERT(occluderKey, occluderRow, occluders, kMaxClusterOccluders, key, i)
         }
     }
 
     const uint first = slot * kListStride;
-    lists[first] = occluders.count;
-    lists[first + 1u] = lights.count;
-    for (uint i = 0u; i < occluders.count; ++i)
-        lists[first + kListOccluders + i] = occluders.row[i];
-    uint before = occluders.count; // never more than for the next farther light, so that kernels need one product
-    for (uint l = lights.count; l-- > 0u;) {
-        const GpuInstance g = loadInstance(lights.row[l]);
+    lists[first] = occluders;
+    lists[first + 1u] = lights;
+    for (uint i = 0u; i < occluders; ++i)
+        lists[first + kListOccluders + i] = occluderRow[i];
+    uint before = occluders; // never more than for the next farther light, so that kernels need one product
+    for (uint l = lights; l-- > 0u;) {
+        const GpuInstance g = loadInstance(lightRow[l]);
         uint certain = 0u, possible = 0u;
-        for (uint i = 0u; i < occluders.count; ++i) {
-            const bool own = occluders.row[i] + 1u == uint(int(g.material1.z));
+        for (uint i = 0u; i < occluders; ++i) {
+            const bool own = occluderRow[i] + 1u == uint(int(g.material1.z));
             const float weight =
-                own ? 0.0 : orderWeightAround(loadInstance(occluders.row[i]).sphere, g.sphere, center, radius);
+                own ? 0.0 : orderWeightAround(loadInstance(occluderRow[i]).sphere, g.sphere, center, radius);
             possible |= weight > 0.0 ? 1u << i : 0u;
             certain += certain == i && weight == 1.0 ? 1u : 0u;
         }
         before = min(before, certain);
-        lists[first + kListLights + 3u * l] = lights.row[l];
+        lists[first + kListLights + 3u * l] = lightRow[l];
         lists[first + kListLights + 3u * l + 1u] = before;
         lists[first + kListLights + 3u * l + 2u] = before < 32u ? possible >> before << before : 0u;
     }
-    atomicAdd(cull.pairs, occluders.count);
-    if (occluders.dropped + lights.dropped > 0u)
-        atomicAdd(cull.dropped, occluders.dropped + lights.dropped);
+    atomicAdd(cull.pairs, occluders);
+    if (dropped > 0u)
+        atomicAdd(cull.dropped, dropped);
 }

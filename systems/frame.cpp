@@ -182,7 +182,8 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
     compute(passes.instanceUpdate,
             {.shader = "instance_update.comp", .bindings = scene, .pushBytes = 4});
     compute(passes.clusterCull, {.shader = "cluster_cull.comp", .bindings = scene});
-    compute(passes.entitySort, {.shader = "entity_sort.comp", .bindings = scene});
+    compute(passes.entitySort,
+            {.shader = "entity_sort.comp", .bindings = scene, .constants = {0, 0, 0, lights}});
     compute(passes.combineLiteral, {.shader = "combine_literal.comp",
                                     .bindings = scene,
                                     .constants = {0, 0, selfScale, lights}});
