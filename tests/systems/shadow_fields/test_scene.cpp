@@ -13,7 +13,9 @@ namespace penumbra {
 
 namespace {
 
-MeshAsset finish(MeshAsset mesh, bool bake)
+const BakeOptions kSmallField{.shells = 12, .side = 17, .directions = 256, .rasterSide = 128};
+
+MeshAsset finish(MeshAsset mesh, bool bake, const BakeOptions& options = kSmallField)
 {
     mesh.clusters = buildClusters(mesh.positions, mesh.normals, mesh.indices);
     mesh.selfVisibility.assign(mesh.positions.size(), SelfVisibility{});
@@ -21,9 +23,7 @@ MeshAsset finish(MeshAsset mesh, bool bake)
         open.fill(128);
     if (bake) {
         Progress progress("test");
-        BakeResult baked =
-            bakeMesh(mesh.positions, mesh.normals, mesh.indices,
-                     {.shells = 12, .side = 17, .directions = 256, .rasterSide = 128}, progress);
+        BakeResult baked = bakeMesh(mesh.positions, mesh.normals, mesh.indices, options, progress);
         mesh.selfVisibility = std::move(baked.selfVisibility);
         mesh.field = quantiseField(baked.field);
     }
@@ -50,7 +50,9 @@ vec4 quaternion(float angle, vec3 axis)
 
 } // namespace
 
-MeshAsset makeSphereAsset(float radius, int rows, bool bake)
+namespace {
+
+MeshAsset makeSphereMesh(float radius, int rows)
 {
     MeshAsset mesh;
     const int turns = 2 * rows;
@@ -74,7 +76,19 @@ MeshAsset makeSphereAsset(float radius, int rows, bool bake)
                 mesh.indices.insert(mesh.indices.end(), {a, b + 1, b});
         }
     }
-    return finish(std::move(mesh), bake);
+    return mesh;
+}
+
+} // namespace
+
+MeshAsset makeSphereAsset(float radius, int rows, bool bake)
+{
+    return finish(makeSphereMesh(radius, rows), bake);
+}
+
+MeshAsset makeFineSphereAsset(float radius)
+{
+    return finish(makeSphereMesh(radius, 48), true, {});
 }
 
 MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake)

@@ -14,6 +14,9 @@ namespace penumbra {
 MeshAsset makeSphereAsset(float radius, int rows, bool bake = true);
 MeshAsset makeBoxAsset(vec3 halfExtents, int cells, bool bake = true);
 
+// With a field as the asset compiler makes it: 32 shells of 65², 1024 directions.
+MeshAsset makeFineSphereAsset(float radius);
+
 // Lights with a field of 14 shells of 17² up to 16 bounding radii.
 MeshAsset makeSphereLight(float radius, vec3 radiance);
 MeshAsset makeRectangleLight(vec2 size, vec3 radiance);
