@@ -17,7 +17,7 @@ constexpr std::size_t kMaxJsonBytes = 256u << 20; // a .gltf may hold its buffer
 constexpr const char* kBake = "compile it with assetc bake";
 constexpr const char* kCompileMap = "compile it with assetc environment";
 constexpr const char* kCompiled =
-    "it is ready to be used as it is; to compile it anew, compile its source";
+    "it is no source: use it as it is, or compile what it was made from";
 constexpr const char* kExport = "export it as glTF (.glb), which assetc bake reads";
 constexpr const char* kNotAMap =
     "assetc reads no such picture; light and sky come as OpenEXR or Radiance .hdr";

@@ -169,6 +169,12 @@ int run(int argc, char** argv)
             spdlog::error("{}", wrong);
             return kExitUsage;
         }
+    for (CLI::App* command : app.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            if (option->get_expected_max() > 0) // "$OUT" with OUT unset
+                option->check([](const std::string& text) {
+                    return text.empty() ? std::string("is empty") : std::string();
+                });
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

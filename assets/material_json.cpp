@@ -86,7 +86,8 @@ private:
 
     static void readExtensions(const JsonReader& extensions, SurfaceMaterial& material)
     {
-        if (extensions.has(kStrengthExtension))
+        if (extensions.has(kStrengthExtension) &&
+            extensions.member(kStrengthExtension).has("emissiveStrength"))
             material.emissive *=
                 extensions.member(kStrengthExtension).number("emissiveStrength", 0, kMaxEmissive);
         if (!extensions.has(kFieldExtension))

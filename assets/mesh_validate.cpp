@@ -134,7 +134,8 @@ Result<void> checkSurface(const SurfaceMaterial& material, const MeshAsset& mesh
             return Error{fmt::format("an emission of {}, allowed 0 to {}", material.emissive[c],
                                      kMaxEmissive)};
     if (const vec2 cone = material.emissionCone;
-        !(cone.x >= 0 && cone.y <= kMaxEmissionAngle && (cone.x < cone.y || cone == vec2(0))))
+        cone != vec2(0) && !(cone.x >= 0 && cone.y <= kMaxEmissionAngle &&
+                             std::cos(cone.x) - std::cos(cone.y) > 1e-6f))
         return Error{fmt::format("an emission cone of {} to {} radians", cone.x, cone.y)};
     if (!(material.alphaCutoff >= 0 && material.alphaCutoff <= kMaxTextureNumber) ||
         !(std::abs(material.normalScale) <= kMaxTextureNumber))

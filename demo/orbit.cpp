@@ -1,5 +1,6 @@
 #include "demo/orbit.h"
 
+#include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
 namespace penumbra {

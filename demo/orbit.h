@@ -4,8 +4,6 @@
 #include "runtime/ecs/system_context.h"
 #include "systems/components.h"
 
-#include <optional>
-
 namespace penumbra {
 
 // A circle about the vertical axis through `center`.  Written by: spawn.  Read by: moveOrbits.
@@ -15,7 +13,7 @@ struct Orbit {
     float radius = 0; // metres
     float speed = 0;  // rad/s, counter-clockwise from above
     float phase = 0;  // rad at time 0
-    float bob = 0;    // metres up and down, once per turn
+    float bob = 0;    // metres up and down, twice per turn
     float spin = 0;   // rad/s about its own vertical axis
     float aim = 0;    // 1: its +z looks at `center` instead
 };

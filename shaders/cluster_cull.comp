@@ -22,11 +22,11 @@ void main()
     const float radius = b.sphere.w * g.material1.y;
 
     for (int p = 0; p < 6; ++p)
-        if (sphereOutside(frame.frustum[p], center, radius))
+        if ((frame.culls & kCullFrustum) != 0u && sphereOutside(frame.frustum[p], center, radius))
             return;
     const vec3 axis =
         linear(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, b.faces.xyz) / g.material1.y;
-    if (facesAway(center - frame.eye.xyz, axis, b.faces.w, radius))
+    if ((frame.culls & kCullBackfaces) != 0u && facesAway(center - frame.eye.xyz, axis, b.faces.w, radius))
         return;
 
     const uint slot = atomicAdd(cull.combineGroups[0], 1u);

@@ -46,7 +46,7 @@ ShNodal occlusion(FieldEntity entity, vec3 position, float weight)
 }
 
 // The double product, in the light's frame: one rotation for three channels.
-vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position, vec3 normal)
+vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position, vec3 normal, float glossFraction)
 {
     FieldCell cell;
     const FieldTetrahedron t = tetrahedronAt(light, position, cell);
@@ -56,7 +56,8 @@ vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position, vec3 norma
     const Sh4 b = sampleField(cell.sample0 + 2u * channel, t);
     const Sh4 all = fieldDeviation(shAdd(shAdd(r, g), b), scale);
     const Sh4 local = fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)), scale);
-    const float correction = irradianceCorrection(all, normalize(light.radiiFromWorld * normal));
+    const float matte = irradianceCorrection(all, normalize(light.radiiFromWorld * normal));
+    const float correction = mix(matte, 1.0, glossFraction);
     return correction * max(vec3(shDot(local, r), shDot(local, g), shDot(local, b)), vec3(0.0));
 }
 
@@ -76,7 +77,7 @@ void occlude(uint row)
 }
 
 // `possible`: occluders that `transfer` has not got yet and that may stand before the light, as bits.
-vec3 localLight(GpuInstance light, uint possible, uint v)
+vec3 localLight(GpuInstance light, uint possible, float glossFraction, uint v)
 {
     ShNodal through = transfer[v];
     for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
@@ -85,7 +86,7 @@ vec3 localLight(GpuInstance light, uint possible, uint v)
         through = shMultiply(through, occlusion(instanceField(occluder), position[v], weight));
     }
     return risen(light.sphere, v) * light.material.rgb *
-           lightThrough(through, instanceField(light), position[v], normal[v]);
+           lightThrough(through, instanceField(light), position[v], normal[v], glossFraction);
 }
 
 void main()
@@ -117,7 +118,7 @@ void main()
             const GpuInstance light = loadInstance(listed(at));
             const uint possible = listed(at + 2u);
             [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-                sum[v] += localLight(light, possible, v);
+                sum[v] += localLight(light, possible, self.material.w, v);
         }
     }
     for (; next < occluders; ++next)

@@ -58,7 +58,9 @@ void main()
     for (uint i = 0u; i < rows; ++i) {
         const GpuInstance g = loadInstance(i);
         const vec3 to = g.sphere.xyz - center;
-        if (g.grid.w == 0.0 || length(to) - radius > g.grid.w || belowHorizon(to, g.sphere.w, axis, b.vertices.w, radius))
+        if (g.grid.w == 0.0 || length(to) - radius > g.grid.w)
+            continue;
+        if ((frame.culls & kCullHorizon) != 0u && belowHorizon(to, g.sphere.w, axis, b.vertices.w, radius))
             continue;
         const float key = powerDistance(g.sphere, center);
         if (kLocalLights && i >= frame.instanceCount) {

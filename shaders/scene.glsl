@@ -16,7 +16,7 @@ layout(set = 0, binding = 9, scalar) readonly buffer Clusters { SceneCluster clu
 layout(set = 0, binding = 10, scalar) buffer Cull { CullResult cull; };
 layout(set = 0, binding = 11, scalar) buffer Visible { uint visible[]; };          // [visible] cluster
 layout(set = 0, binding = 12) uniform usamplerBuffer visibleTexels;
-layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][kListStride], see below
+layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][kListStride]: instance.h
 layout(set = 0, binding = 14) uniform usamplerBuffer listTexels;
 layout(set = 0, binding = 15, scalar) writeonly buffer Radiance { vec4 radiance[]; };
 layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [instance] VkDrawIndexedIndirectCommand

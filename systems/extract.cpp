@@ -48,7 +48,7 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
     Result<void> failed;
     const auto need = [&](ecs::Entity entity, AssetHandle asset, FieldKind kind,
                           std::string_view use) {
-        if (Result<void> has = needField(world, entity, assets, asset, kind, use); !has)
+        if (Result<void> has = needField(world, entity, assets, asset, kind, use); !has && failed)
             failed = has;
     };
     world.query<const Transform, const MeshInstance>().each(
@@ -76,8 +76,12 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
             light.asset = emitter.asset.index;
             place(light, transform);
             light.intensity = emitter.intensity;
-            if (const auto* owner = world.tryGet<const RenderInstance>(entity))
+            if (const auto* owner = world.tryGet<const RenderInstance>(entity)) {
                 light.owner = owner->index;
+                if (instances[owner->index].mesh != light.asset && failed)
+                    failed = Error{world.describe(entity) + ": shows another mesh than that of "
+                                                            "its emitter; give both one asset"};
+            }
             lights.push_back(light);
             lightEntities.push_back(entity);
         });

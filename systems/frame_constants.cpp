@@ -118,6 +118,7 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     frame.worldFromClip = glm::inverse(view.clipFromWorld);
     frame.eye = vec4(view.eye, 1);
     frame.backgroundIntensity = backgroundIntensity;
+    frame.culls = kCullAll;
 
     // Planes from the rows of the matrix (Gribb and Hartmann 2001), normalised so that distances
     // are metres.

@@ -27,6 +27,7 @@ Environment aboveGround(const Environment& environment);
 // Light that comes from d comes from `rotation` d afterwards.
 LightSh rotatedLight(const LightSh& light, const mat3& rotation);
 
+// All tests of kCullAll are on.
 FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity);
 
 } // namespace penumbra

@@ -140,6 +140,11 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
                                  "{}; use fewer instances or coarser meshes",
                                  clusters, kClusterReceivers, groups)};
 
+    constexpr std::size_t kMaxSamples = 1u << 24; // rows of instances hold them as floats
+    if (data.fieldSamples.size() > kMaxSamples)
+        return Error{fmt::format("the scene's fields have {} samples, at most {}; bake them with "
+                                 "fewer shells or a smaller --max-side",
+                                 data.fieldSamples.size(), kMaxSamples)};
     Maker maker{device};
     GpuSceneBuffers& b = scene.m_buffers;
     b.fields = maker.with("fields", data.fields, kStorageUse);

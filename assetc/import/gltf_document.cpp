@@ -61,6 +61,25 @@ bool isSupported(const std::string& extension)
            extension == "EXT_mesh_gpu_instancing" || extension == "MSFT_lod";
 }
 
+// The library reads any version as 2.0, and finds nothing in a 1.0.
+Result<void> checkVersion(const json& document)
+{
+    const auto asset = document.find("asset");
+    if (asset == document.end() || !asset->is_object())
+        return {}; // its check says so
+    for (const char* member : {"version", "minVersion"})
+        if (const auto version = asset->find(member);
+            version != asset->end() && version->is_string()) {
+            const std::string text = version->get<std::string>().substr(0, 16);
+            if (!text.starts_with("2.") ||
+                (member == std::string_view("minVersion") && text != "2.0"))
+                return Error{
+                    fmt::format("asset.{} is {}; assetc reads 2.0; export it as that", member,
+                                json(text).dump(-1, ' ', true, json::error_handler_t::replace))};
+        }
+    return {};
+}
+
 Result<void> checkExtensions(const json& document)
 {
     std::string unknown;
@@ -176,6 +195,8 @@ Result<GltfDocument> loadGltf(std::span<const std::byte> bytes, const std::files
     if (!document)
         return document.error();
     Source source{folder};
+    if (const auto version = checkVersion(*document); !version)
+        return version.error();
     if (const auto extensions = checkExtensions(*document); !extensions)
         return extensions.error();
     if (const auto buffers = checkBuffers(*document, source.folder, asked); !buffers)

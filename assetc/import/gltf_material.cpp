@@ -57,7 +57,7 @@ void warnOfExtensions(const nlohmann::json& document, std::vector<std::string>& 
                     material.is_object() ? material.find("extensions") : material.end();
                 extensions != material.end() && extensions->is_object())
                 for (const auto& [name, value] : extensions->items())
-                    if (name.starts_with("KHR_"))
+                    if (name.starts_with("KHR_") && name != "KHR_materials_emissive_strength")
                         names.insert(name.substr(0, 64));
     std::string list;
     for (const std::string& name : names)

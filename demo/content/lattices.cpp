@@ -51,8 +51,6 @@ ContentMesh makeRoundedCube()
     return builder.finish("rounded_cube", 40);
 }
 
-// The sides are one quad high and the bottom a fan around its middle: no receiver looks at them
-// closely.
 ContentMesh makePanel()
 {
     // A floor of its own, stood up: its top looks along +z.
@@ -66,6 +64,8 @@ ContentMesh makePanel()
     return mesh;
 }
 
+// The sides are one quad high and the bottom a fan around its middle: no receiver looks at them
+// closely.
 ContentMesh makeFloor(const FloorShape& shape)
 {
     PENUMBRA_ASSERT(shape.width > 0 && shape.depth > 0 && shape.thickness > 0 && shape.cellsX > 0 &&

@@ -19,6 +19,12 @@ Result<AreaLight> AreaLight::make(std::uint32_t index, const ReferenceInstance& 
         surface->radiance *= intensity;
         light.m_surfaces.push_back(std::move(*surface));
     }
+    const bool shines =
+        std::any_of(light.m_surfaces.begin(), light.m_surfaces.end(), [](const Surface& surface) {
+            return surface.radiance.r + surface.radiance.g + surface.radiance.b > 0;
+        });
+    if (!shines && intensity != vec3(0))
+        return Error{mesh.name + ": has no material that emits; compile it with assetc light"};
     double area = 0;
     std::vector<double> start{0};
     for (const Submesh& submesh : submeshesOf(mesh)) {
@@ -51,7 +57,9 @@ Result<AreaLight::Surface> AreaLight::makeSurface(const MeshAsset& mesh,
 {
     Surface surface;
     surface.radiance = material.emissive;
-    if (material.emissionCone.y > 0) {
+    surface.twoSided = material.doubleSided;
+    surface.spot = material.emissionCone.y > 0;
+    if (surface.spot) {
         surface.cosInner = std::cos(material.emissionCone.x);
         surface.cosOuter = std::cos(material.emissionCone.y);
     }
@@ -90,7 +98,8 @@ AreaLight::Emission AreaLight::emission(std::uint32_t index, vec2 b, vec3 direct
 {
     const Triangle& triangle = m_triangles[index];
     const Surface& surface = m_surfaces[triangle.material];
-    const float cosine = dot(triangle.normal, direction);
+    const float along = dot(triangle.normal, direction);
+    const float cosine = surface.twoSided ? abs(along) : along;
     if (cosine <= 0.0f)
         return {};
     vec3 radiance = surface.radiance;
@@ -105,7 +114,7 @@ AreaLight::Emission AreaLight::emission(std::uint32_t index, vec2 b, vec3 direct
         radiance *= surface.texture[std::size_t{pixel(uv.y, surface.height)} * surface.width +
                                     pixel(uv.x, surface.width)];
     }
-    if (surface.cosOuter > 0.0f) { // intensity I(a) of KHR_lights_punctual, over the cosine
+    if (surface.spot) { // intensity I(a) of KHR_lights_punctual, over the cosine
         const float t =
             clamp((cosine - surface.cosOuter) / (surface.cosInner - surface.cosOuter), 0.0f, 1.0f);
         radiance *= t * t / cosine;

@@ -11,9 +11,9 @@ namespace penumbra {
 class AreaLight {
 public:
     // Of the instance with this index in its scene. All of its triangles shine on the side around
-    // which their vertices run counter-clockwise: `intensity` times their material's emission,
-    // times its texture, in the cone of a spot. Error: no material that emits, or a texture that is
-    // no PNG.
+    // which their vertices run counter-clockwise, double-sided ones on both: `intensity` times
+    // their material's emission, times its texture, in the cone of a spot. Error: no material that
+    // emits, or a texture that is no PNG.
     static Result<AreaLight> make(std::uint32_t index, const ReferenceInstance& instance,
                                   vec3 intensity);
 
@@ -45,7 +45,8 @@ private:
     };
     struct Surface {
         vec3 radiance{0};
-        float cosInner = 1, cosOuter = 0; // of a spot; cosOuter 0: none
+        bool twoSided = false, spot = false;
+        float cosInner = 1, cosOuter = 0; // of a spot
         std::uint32_t width = 0, height = 0;
         std::vector<vec3> texture; // [height][width] linear; empty: white
     };

@@ -39,7 +39,7 @@ public:
     // neighbours. A black light has pdf 0 everywhere and must not be sampled.
     [[nodiscard]] Sample sample(vec2 u) const;
 
-    [[nodiscard]] bool black() const { return m_densityScale == 0.0f; }
+    [[nodiscard]] bool black() const { return m_densityScale == 0.0f || m_intensity == 0.0f; }
 
 private:
     ReferenceLight(const mat3& worldFromEnvironment, float intensity);

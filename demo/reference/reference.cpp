@@ -130,7 +130,7 @@ private:
     [[nodiscard]] glm::uvec2 shift(std::size_t index, std::uint32_t stream) const
     {
         const std::uint32_t base =
-            hashBits(static_cast<std::uint32_t>(index) + hashBits(2 * m_seed + stream + 1));
+            hashBits(static_cast<std::uint32_t>(index) + hashBits(hashBits(m_seed + 1) + stream));
         return {base, hashBits(base + 0x9e3779b9u)};
     }
 

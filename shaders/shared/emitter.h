@@ -12,7 +12,7 @@ PENUMBRA_BEGIN
 
 // Cosine-weighted share of a round light with the angular radius asin(s) whose centre is at the
 // cosine t, over the same without a horizon: t above, 0 below, a parabola where the horizon cuts
-// it, which meets both smoothly.
+// it, which meets both smoothly and is up to a sixth too high where the centre is on the horizon.
 PENUMBRA_FN float risenCosine(float t, float s)
 {
     const float up = clamp(t + s, 0.0f, 2.0f * s);

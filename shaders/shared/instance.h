@@ -87,6 +87,12 @@ struct SceneCluster {
     uint firstRadiance; // in the radiance buffer
 };
 
+// Tests that drop what cannot matter: each may be turned off, and the picture stays.
+PENUMBRA_CONST uint kCullFrustum = 1u;   // clusters outside the view
+PENUMBRA_CONST uint kCullBackfaces = 2u; // clusters that look away from the eye
+PENUMBRA_CONST uint kCullHorizon = 4u;   // entities under the horizon of a whole cluster
+PENUMBRA_CONST uint kCullAll = 7u;
+
 // Header that passes cluster_cull and entity_sort fill for the passes after them.
 struct CullResult {
     uint sortGroups[3]; // VkDispatchIndirectCommand of entity_sort
@@ -109,9 +115,9 @@ struct FrameConstants {
     uint lightCount;
     uint denseRotations; // 1: instance_update writes the matrices of kernel literal too
     float backgroundIntensity;
+    uint culls; // kCull… bits
     float padding0;
     float padding1;
-    float padding2;
 };
 
 // A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
@@ -277,6 +283,7 @@ static_assert(sizeof(penumbra::FieldInput) == 64 &&
               offsetof(penumbra::FieldInput, firstSample) == 32);
 static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
 static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
+static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
 static_assert(sizeof(penumbra::FrameConstants) == 1040 &&

@@ -1,4 +1,4 @@
-// Conservative tests of clusters and occluders: what they drop cannot be seen, or cannot matter.
+// Conservative tests of clusters and entities: what they drop cannot be seen, or has no weight.
 #ifndef PENUMBRA_SHADERS_SHARED_VISIBILITY_H
 #define PENUMBRA_SHADERS_SHARED_VISIBILITY_H
 #include "shaders/shared/interop.h"

@@ -59,6 +59,7 @@ TEST_F(CommandLine, WrongUsageIsTwo)
           bake + " --shells 1", bake + " --shells x", bake + " --max-side 64",
           bake + " --directions 63", bake + " --directions 0", bake + " --jobs 0",
           bake + " --threshold -1", bake + " --verify --no-field", bake + " extra",
+          bake + " --report ''", "bake '' -o " + at("o.glb"), "build " + at("m.json") + " -o ''",
           "bake " + at("square.gltf") + " -o " + at("o.gltf"), std::string("inspect"),
           std::string("validate --what x")}) {
         const Outcome outcome = run(arguments);

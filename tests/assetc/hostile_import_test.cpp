@@ -55,6 +55,19 @@ TEST(HostileImport, ThingsThatAreNoFiles)
     EXPECT_NE(refusal(folder.write("none", "x")), "");
 }
 
+TEST(HostileImport, OtherVersionsOfGltf)
+{
+    for (const char* version : {"1.0", "3.0", "20", ""}) {
+        const std::string message =
+            refusalAfter([&](json& document) { document["asset"]["version"] = version; });
+        EXPECT_NE(message.find(fmt::format("asset.version is \"{}\"; assetc reads 2.0", version)),
+                  std::string::npos)
+            << message;
+    }
+    EXPECT_NE(refusalAfter([](json& document) { document["asset"]["minVersion"] = "2.1"; }), "");
+    EXPECT_EQ(refusalAfter([](json& document) { document["asset"]["minVersion"] = "2.0"; }), "");
+}
+
 TEST(HostileImport, EmptyAndForeignContent)
 {
     const TemporaryFolder folder;

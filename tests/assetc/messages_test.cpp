@@ -120,8 +120,8 @@ TEST_F(Messages, CompiledFilesAreNoSources)
             command == std::string("environment") ? at("o.env") : at("o.glb");
         const Outcome refused = run(std::string(command) + " " + at(name) + " -o " + output);
         EXPECT_EQ(refused.code, 1) << name;
-        EXPECT_NE(refused.err.find(std::string(what) + "; it is ready to be used as it is; to "
-                                                       "compile it anew, compile its source"),
+        EXPECT_NE(refused.err.find(std::string(what) + "; it is no source: use it as it is, or "
+                                                       "compile what it was made from"),
                   std::string::npos)
             << refused.err;
         EXPECT_EQ(run(std::string("validate ") + at(name)).out,

@@ -21,6 +21,21 @@ TEST(ObjImport, TrianglesNormalsAndMaterial)
     EXPECT_TRUE(result->warnings.empty());
 }
 
+TEST(ObjImport, ByteOrderMarksAreNoPartOfTheFirstLine)
+{
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "\xef\xbb\xbfnewmtl red\nKd 1 0 0\n");
+    for (const char* text : {"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n",
+                             "v 0 0 0\nmtllib a.mtl\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"}) {
+        const auto path = folder.write("a.obj", std::string("\xef\xbb\xbf") + text);
+        const auto result = importMesh(path);
+        ASSERT_TRUE(result) << result.error().message;
+        EXPECT_EQ(result->mesh.positions.size(), 3u);
+        EXPECT_EQ(result->mesh.material.albedo, vec3(1, 0, 0));
+        EXPECT_TRUE(result->warnings.empty());
+    }
+}
+
 TEST(ObjImport, PolygonsAreTriangulatedAndNegativeIndicesCountBack)
 {
     const TemporaryFolder folder;

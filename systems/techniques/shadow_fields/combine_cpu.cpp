@@ -92,6 +92,7 @@ struct ExactProduct {
     const SceneData& scene;
     const CpuInstances& rows;
     vec3 position, normal; // of the receiver
+    float glossFraction;
 
     [[nodiscard]] ShNodal occlude(const ShNodal& transfer, std::uint32_t row, float weight) const
     {
@@ -122,8 +123,9 @@ struct ExactProduct {
             all = shAdd(all, steps);
             b[static_cast<int>(channel)] = shDot(local, steps);
         }
-        const float correction = irradianceCorrection(fieldDeviation(all, scale),
-                                                      normalize(light.radiiFromWorld * normal));
+        const float matte = irradianceCorrection(fieldDeviation(all, scale),
+                                                 normalize(light.radiiFromWorld * normal));
+        const float correction = mix(matte, 1.0f, glossFraction);
         return correction * max(b, vec3(0));
     }
 };
@@ -161,7 +163,8 @@ Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& 
 
 // The lists of pass entity_sort for one cluster.
 ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
-                             std::uint32_t clusterIndex, const ClusterSphere& s)
+                             std::uint32_t clusterIndex, const ClusterSphere& s,
+                             std::uint32_t culls)
 {
     const SceneCluster& cluster = scene.clusters[clusterIndex];
     const float cutoff = scene.bounds[cluster.bounds].vertices.w;
@@ -169,7 +172,9 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
     for (std::uint32_t i = 0; i < rows.instances.size(); ++i) {
         const GpuInstance& g = rows.instances[i];
         const vec3 to = vec3(g.sphere) - s.center;
-        if (g.grid.w == 0 || length(to) - s.radius > g.grid.w ||
+        if (g.grid.w == 0 || length(to) - s.radius > g.grid.w)
+            continue;
+        if ((culls & kCullHorizon) != 0 &&
             belowHorizon(to, g.sphere.w, s.vertexAxis, cutoff, s.radius))
             continue;
         const bool light = i >= scene.instances.size();
@@ -226,12 +231,15 @@ std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstan
         const ClusterBounds& bounds = scene.bounds[cluster.bounds];
         const ClusterSphere s = worldBounds(bounds, instances.instances[cluster.instance]);
         const bool outside =
+            (frame.culls & kCullFrustum) != 0 &&
             std::any_of(std::begin(frame.frustum), std::end(frame.frustum), [&](const vec4& plane) {
                 return sphereOutside(plane, s.center, s.radius);
             });
-        if (!outside &&
-            !facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius))
-            visible.push_back(sortEntities(scene, instances, c, s));
+        const bool away =
+            (frame.culls & kCullBackfaces) != 0 &&
+            facesAway(s.center - vec3(frame.eye), s.faceAxis, bounds.faces.w, s.radius);
+        if (!outside && !away)
+            visible.push_back(sortEntities(scene, instances, c, s, frame.culls));
     }
     return visible;
 }
@@ -258,7 +266,8 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
                 sum += transfer.c[k] * vec3(frame.light[k]);
         } else {
             const ShNodal transfer = walk(
-                ExactProduct{scene, instances, receiver.position, receiver.normal},
+                ExactProduct{scene, instances, receiver.position, receiver.normal,
+                             receiver.glossFraction},
                 transferNodal(shRotate(ownVisibility, worldFromObject), receiver), entities, sum);
             for (int n = 0; n < 32; ++n)
                 sum += transfer.v[n] * vec3(frame.lightNodes[n]);

@@ -37,15 +37,18 @@ protected:
         return kScene;
     }
 
-    Drawn draw(const TestScene& scene, Kernel kernel, std::uint32_t frames = 1)
+    Drawn draw(const TestScene& scene, Kernel kernel, std::uint32_t frames = 1,
+               std::uint32_t culls = kCullAll)
     {
         const FramePasses passes = take(createFramePasses(device(), !scene.data.lights.empty()));
         FrameTargets targets = take(createFrameTargets(device(), passes, {160, 120}));
         GpuScene gpu = take(GpuScene::create(device(), scene.data, scene.environment, 2));
         FrameRing ring(device());
+        FrameConstants constants = scene.constants;
+        constants.culls = culls;
         for (std::uint32_t i = 0; i < frames; ++i) {
             const GpuFrame frame = take(ring.beginFrame());
-            recordFrame(frame, passes, gpu, scene.constants, {kernel, true, 1}, targets);
+            recordFrame(frame, passes, gpu, constants, {kernel, true, 1}, targets);
             take(ring.endFrame());
         }
         take(ring.waitIdle());
@@ -154,6 +157,25 @@ TEST_F(FrameTest, ExactEqualsTwin)
 {
     expectTwin(scene(), Kernel::Exact, 3e-3, true);
     expectTwin(litScene(), Kernel::Exact, 3e-3, true);
+}
+
+// Every test is conservative: without it there is more to do, and the same to see.
+TEST_F(FrameTest, CullingChangesNothingInThePicture)
+{
+    const Drawn culled = draw(litScene(), Kernel::Exact);
+    for (const std::uint32_t off : {kCullFrustum, kCullBackfaces, kCullHorizon}) {
+        const Drawn drawn = draw(litScene(), Kernel::Exact, 1, kCullAll & ~off);
+        const std::uint32_t more = off == kCullFrustum ? 0 : 1; // all of the scene is in view
+        EXPECT_GE(drawn.cull.pairs, culled.cull.pairs + more) << off;
+        ASSERT_EQ(drawn.picture.size(), culled.picture.size());
+        int largest = 0;
+        for (std::size_t i = 0; i < drawn.picture.size(); ++i)
+            largest = std::max(largest, std::abs(std::to_integer<int>(drawn.picture[i]) -
+                                                 std::to_integer<int>(culled.picture[i])));
+        // Bytes: a difference of 0.5 / 255 or less rounds to 0 or 1.
+        EXPECT_LE(largest, 1) << off;
+        RecordProperty(fmt::format("largest{}", off), largest);
+    }
 }
 
 TEST_F(FrameTest, FramesRepeatBitByBit)

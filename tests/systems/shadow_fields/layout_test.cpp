@@ -64,6 +64,7 @@ TEST(Layout, FrameConstants)
     EXPECT_SAME_OFFSET(frame, FrameConstants, light);
     EXPECT_SAME_OFFSET(frame, FrameConstants, clusterCount);
     EXPECT_SAME_OFFSET(frame, FrameConstants, backgroundIntensity);
+    EXPECT_SAME_OFFSET(frame, FrameConstants, culls);
 }
 
 } // namespace

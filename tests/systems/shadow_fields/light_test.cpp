@@ -1,4 +1,5 @@
 // Local lights by the CPU twin of the kernels: energy, order and what must not jump.
+#include "shaders/shared/order.h"
 #include "tests/systems/shadow_fields/test_scene.h"
 
 #include <gtest/gtest.h>
@@ -166,6 +167,51 @@ TEST(Invariance, TheOrderOfTwoDisjointOccludersHardlyMatters)
     }
 }
 
+// Weights of one occluder and one light, as entity_sort and the kernels ask for them.
+TEST(Order, FollowsWhatARayMeetsFirst)
+{
+    const vec4 table(0, 0, 0, 1), lamp(0, 0.3f, 0, 0.1f); // the lamp stands on it
+    EXPECT_EQ(orderWeight(table, lamp, vec3(0, 1.5f, 0)), 0);
+    EXPECT_EQ(orderWeight(table, lamp, vec3(0, -1.5f, 0)), 1);
+    const vec4 ball(0, 0, 0.3f, 0.23f), screen(0, 0, 0, 0.57f); // the ball stands before the screen
+    EXPECT_EQ(orderWeight(ball, screen, vec3(0, 0, 1)), 1);
+    EXPECT_EQ(orderWeight(ball, screen, vec3(0, 0, -1)), 0);
+    EXPECT_EQ(orderWeight(ball, vec4(ball.x, ball.y, ball.z, 0.1f), vec3(1, 2, 3)), 0.5f);
+}
+
+TEST(Order, TurnsAsSmoothlyFarAwayAsNearby)
+{
+    const vec4 occluder(0, 0, 0, 0.25f);
+    for (const float distance : {0.5f, 3.0f, 30.0f}) {
+        float largest = 0;
+        for (int i = -400; i < 400; ++i) { // the light passes in steps of a millimetre
+            const auto weight = [&](int step) {
+                const vec4 light(0.45f, 0.001f * static_cast<float>(step), 0, 0.1f);
+                return orderWeight(occluder, light, vec3(0.22f, distance, 0));
+            };
+            largest = std::max(largest, std::abs(weight(i + 1) - weight(i)));
+        }
+        EXPECT_LT(largest, 0.04f) << distance;
+    }
+}
+
+TEST(Order, AClusterAgreesWithItsPoints)
+{
+    const vec4 occluder(0.1f, 0, 0, 0.3f), light(0.6f, 0.2f, 0, 0.15f);
+    int certain = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto f = static_cast<float>(i);
+        const vec3 center(3 * std::sin(f), 2 * std::sin(1.3f * f + 1), std::sin(2.7f * f));
+        const float around = orderWeightAround(occluder, light, center, 0.2f);
+        const vec3 offset = 0.2f * normalize(vec3(std::sin(5 * f), std::cos(3 * f), std::sin(f)));
+        if (around == 0.5f)
+            continue;
+        ++certain;
+        EXPECT_EQ(orderWeight(occluder, light, center + offset), around);
+    }
+    EXPECT_GT(certain, 500);
+}
+
 // A light flies past and through an object over a floor, in steps of a millimetre: it changes
 // places with the object in the order of the floor's receivers, and enters its bounding sphere.
 class FlyingLight : public ::testing::TestWithParam<Kernel> {
@@ -189,6 +235,7 @@ protected:
             if (!last.empty()) {
                 const Change change = changeOf(now, last);
                 const float brightest = range(now, now.size()).second;
+                EXPECT_GT(brightest, 0.05f);
                 largest = std::max(largest, change.largest / brightest);
             }
             last = std::move(now);

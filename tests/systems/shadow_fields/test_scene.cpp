@@ -214,16 +214,12 @@ TestScene makeLitTestScene()
 
 std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants)
 {
-    SceneData all = data;
-    for (ClusterBounds& bounds : all.bounds)
-        bounds.faces.w = -1; // seen from everywhere
     FrameConstants frame = constants;
-    for (vec4& plane : frame.frustum)
-        plane = vec4(0, 0, 0, 1e9f);
-    const CpuInstances rows = updateInstances(all);
-    std::vector<vec4> radiance(all.radianceCount);
-    for (const ClusterEntities& cluster : cullAndSort(all, rows, frame))
-        combineCluster(kernel, all, rows, frame, cluster, radiance);
+    frame.culls = kCullHorizon; // seen from everywhere
+    const CpuInstances rows = updateInstances(data);
+    std::vector<vec4> radiance(data.radianceCount);
+    for (const ClusterEntities& cluster : cullAndSort(data, rows, frame))
+        combineCluster(kernel, data, rows, frame, cluster, radiance);
     return radiance;
 }
 
