@@ -1,5 +1,6 @@
 #include "assetc/file_type.h"
 
+#include "assetc/byte_order_mark.h"
 #include "assets/glb.h"
 #include "assets/json_reader.h"
 #include "assets/mesh_format.h"
@@ -164,9 +165,7 @@ RecognisedFile recogniseHead(std::span<const std::byte> bytes, const std::filesy
     for (const Signature& signature : kSignatures)
         if (text.starts_with(signature.begin))
             return {signature.type, signature.what, signature.remedy};
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (text.starts_with(kByteOrderMark))
-        text.remove_prefix(kByteOrderMark.size());
+    text = withoutByteOrderMark(text);
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin != std::string_view::npos && (text[begin] == '{' || text[begin] == '['))
         return {FileType::OtherJson, {}, {}};

@@ -37,6 +37,25 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
         fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
 }
 
+Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
+                                                  const std::string& environment)
+{
+    auto scene = std::make_unique<DemoScene>();
+    scene->name = std::move(name);
+    scene->ground = true;
+    Result<Environment> sky = loadEnvironment(
+        options.assets, options.environment.empty() ? environment : options.environment);
+    if (!sky)
+        return sky.error();
+    scene->environment = std::move(*sky);
+    Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / "floor.glb");
+    if (!floor)
+        return floor.error();
+    scene->world.create(Transform{}, MeshInstance{*floor},
+                        Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
+    return scene;
+}
+
 Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name)
 {
     const std::filesystem::path path = assets / (name + ".env");

@@ -42,6 +42,11 @@ std::span<const SceneEntry> sceneEntries();
 // Error: no such scene, the message lists all; or an asset that is missing or damaged.
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
 
+// A scene on the floor, which lies in the light: the sky that the options ask for, else
+// `environment`, and floor.glb. Error: one of them is missing or damaged.
+Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
+                                                  const std::string& environment);
+
 // `name` of `assets`, without .env. Error: no such map, the message lists all; or a damaged one.
 Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name);
 

@@ -1,7 +1,7 @@
 #version 460
-// instance_update: one invocation per changed instance. Transform and field -> the constants that every receiver uses.
+// instance_update: one invocation per changed row, an instance or a light. Transform and field -> the constants that every receiver uses.
 //   reads   changed, inputs [changedCount], fields [fieldCount]
-//   writes  instances [instanceCount] at the changed indices; denseRotations where kernel literal is in use
+//   writes  instances [rows] at the changed indices; denseRotations where kernel literal is in use
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
 

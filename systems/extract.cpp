@@ -33,6 +33,16 @@ void place(Place& at, const Transform& transform)
     at.rotation = transform.rotation;
 }
 
+// `Index`: RenderInstance or RenderLight.
+template <class Index>
+void gatherMoved(const ecs::SystemContext& context, std::vector<SceneChanges::Moved>& out)
+{
+    context.query<const Transform, const Index, ecs::Changed<Transform>>().each(
+        [&](const Transform& transform, const Index& entity) {
+            out.push_back({entity.index, transform});
+        });
+}
+
 MeshMaterial meshMaterial(const Material& material)
 {
     return {material.albedo, material.glossFraction, material.glossExponent};
@@ -101,17 +111,11 @@ void SceneChanges::clear()
 
 void gatherChanged(const ecs::SystemContext& context, SceneChanges& out)
 {
-    context.query<const Transform, const RenderInstance, ecs::Changed<Transform>>().each(
-        [&](const Transform& transform, const RenderInstance& instance) {
-            out.instances.push_back({instance.index, transform});
-        });
+    gatherMoved<RenderInstance>(context, out.instances);
+    gatherMoved<RenderLight>(context, out.lights);
     context.query<const Material, const RenderInstance, ecs::Changed<Material>>().each(
         [&](const Material& material, const RenderInstance& instance) {
             out.materials.push_back({instance.index, material});
-        });
-    context.query<const Transform, const RenderLight, ecs::Changed<Transform>>().each(
-        [&](const Transform& transform, const RenderLight& light) {
-            out.lights.push_back({light.index, transform});
         });
     context.query<const ShadowFieldEmitter, const RenderLight, ecs::Changed<ShadowFieldEmitter>>()
         .each([&](const ShadowFieldEmitter& emitter, const RenderLight& light) {
@@ -121,31 +125,29 @@ void gatherChanged(const ecs::SystemContext& context, SceneChanges& out)
 
 void applyChanges(const SceneChanges& changes, GpuScene& scene)
 {
-    const SceneData& data = scene.data();
-    for (const SceneChanges::Moved& moved : changes.instances) {
-        SceneInstance instance = data.instances[moved.index];
-        place(instance, moved.transform);
-        scene.setInstance(moved.index, instance);
-    }
-    for (const SceneChanges::Repainted& repainted : changes.materials) {
-        SceneInstance instance = data.instances[repainted.index];
-        instance.material = meshMaterial(repainted.material);
-        scene.setInstance(repainted.index, instance);
-    }
-    for (const SceneChanges::Moved& moved : changes.lights) {
-        SceneLight light = data.lights[moved.index];
-        place(light, moved.transform);
-        scene.setLight(moved.index, light);
-    }
-    for (const SceneChanges::Dimmed& dimmed : changes.intensities) {
-        SceneLight light = data.lights[dimmed.index];
-        light.intensity = dimmed.intensity;
-        scene.setLight(dimmed.index, light);
-        if (light.owner) {
-            SceneInstance surface = data.instances[*light.owner];
-            surface.emission = dimmed.intensity;
-            scene.setInstance(*light.owner, surface);
-        }
+    const auto edit = [&](std::uint32_t index, const auto& change) {
+        SceneInstance instance = scene.data().instances[index];
+        change(instance);
+        scene.setInstance(index, instance);
+    };
+    const auto editLight = [&](std::uint32_t index, const auto& change) {
+        SceneLight light = scene.data().lights[index];
+        change(light);
+        scene.setLight(index, light);
+    };
+    for (const auto& [index, transform] : changes.instances)
+        edit(index, [&, &at = transform](SceneInstance& instance) { place(instance, at); });
+    for (const auto& [index, material] : changes.materials)
+        edit(index, [&, &look = material](SceneInstance& instance) {
+            instance.material = meshMaterial(look);
+        });
+    for (const auto& [index, transform] : changes.lights)
+        editLight(index, [&, &at = transform](SceneLight& light) { place(light, at); });
+    for (const auto& [index, intensity] : changes.intensities) {
+        editLight(index, [&, factor = intensity](SceneLight& light) { light.intensity = factor; });
+        if (const auto& owner = scene.data().lights[index].owner)
+            edit(*owner,
+                 [&, factor = intensity](SceneInstance& surface) { surface.emission = factor; });
     }
 }
 

@@ -11,8 +11,9 @@ namespace penumbra {
 
 namespace {
 
-// Directions and weights that integrate products of two order-6 functions exactly: Gauss-Legendre
-// in z, equal turns about it.
+// Directions and weights that integrate products of two order-6 functions, which have degree 10,
+// exactly: Gauss-Legendre in z (n nodes z_i, the roots of P_n, with the weights
+// 2 / ((1 - z_i^2) P_n'(z_i)^2), up to degree 2n - 1), 11 equal turns about it.
 struct SphereRule {
     static constexpr int kRows = 6, kTurns = 11;
     std::array<glm::dvec4, kRows * kTurns> points; // w: weight

@@ -1,5 +1,6 @@
 #include "assetc/import/import.h"
 
+#include "assetc/byte_order_mark.h"
 #include "assetc/file_type.h"
 #include "assetc/import/gltf.h"
 #include "assetc/import/gltf_scene.h"
@@ -17,8 +18,9 @@ std::string nameOf(const std::filesystem::path& path)
 // Binary or text, which is an object; no line of OBJ begins so.
 bool isGltf(std::string_view text)
 {
-    const std::size_t begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
-    return text.starts_with("glTF") || (begin != std::string_view::npos && text[begin] == '{');
+    const std::string_view unmarked = withoutByteOrderMark(text);
+    const std::size_t begin = unmarked.find_first_not_of(" \t\r\n");
+    return text.starts_with("glTF") || (begin != std::string_view::npos && unmarked[begin] == '{');
 }
 
 struct MeshSource {
@@ -34,9 +36,9 @@ struct MeshSource {
 
 Result<ImportedMesh> readMesh(const MeshSource& source)
 {
-    return isGltf(source.text())
-               ? importGltfBytes(source.bytes, source.folder, source.asked)
-               : importObjText(std::string(source.text()), source.folder, source.asked);
+    return isGltf(source.text()) ? importGltfBytes(source.bytes, source.folder, source.asked)
+                                 : importObjText(std::string(withoutByteOrderMark(source.text())),
+                                                 source.folder, source.asked);
 }
 
 Result<ImportedScene> readScene(const MeshSource& source)

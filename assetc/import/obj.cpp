@@ -1,5 +1,6 @@
 #include "assetc/import/obj.h"
 
+#include "assetc/byte_order_mark.h"
 #include "assetc/import/image_library.h"
 #include "assetc/import/vertex_key.h"
 #include "runtime/file.h"
@@ -17,21 +18,13 @@ namespace {
 
 constexpr std::uint64_t kMaxMaterialBytes = 16u << 20;
 
-// Editors on Windows put it before UTF-8; the library would take it for a part of the first word.
-std::string withoutByteOrderMark(std::string text)
-{
-    if (text.starts_with("\xef\xbb\xbf"))
-        text.erase(0, 3);
-    return text;
-}
-
 Result<std::string> readText(const std::filesystem::path& path, std::uint64_t maxBytes)
 {
     const auto bytes = readFile(path, maxBytes);
     if (!bytes)
         return bytes.error();
-    return withoutByteOrderMark(
-        std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+    return std::string(
+        withoutByteOrderMark({reinterpret_cast<const char*>(bytes->data()), bytes->size()}));
 }
 
 // Reads material libraries inside the folder; another one costs the colours, with a warning, not
@@ -270,10 +263,9 @@ void addMaterials(const ObjFile& file, const std::filesystem::path& folder,
 
 } // namespace
 
-Result<ImportedMesh> importObjText(const std::string& marked, const std::filesystem::path& folder,
+Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
                                    std::vector<AskedFile>* asked)
 {
-    const std::string text = withoutByteOrderMark(marked);
     if (const auto lines = checkLines(text); !lines)
         return lines.error();
     ImportedMesh out;

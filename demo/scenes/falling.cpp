@@ -101,26 +101,16 @@ Result<LoadedKind> loadKind(const Kind& kind, const SceneOptions& options, Asset
 
 Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
 {
-    auto scene = std::make_unique<DemoScene>();
-    scene->name = "falling";
-    scene->ground = true;
+    Result<std::unique_ptr<DemoScene>> made = makeFloorScene(options, "falling", "sunset");
+    if (!made)
+        return made;
+    std::unique_ptr<DemoScene> scene = std::move(*made);
     scene->exposure = 1.6f;
     scene->camera = {.target = vec3(0, 0.22f, 0),
                      .distance = 4.1f,
                      .yaw = 0.55f,
                      .pitch = 0.52f,
                      .fieldOfView = 0.62f};
-    Result<Environment> environment = loadEnvironment(
-        options.assets, options.environment.empty() ? "sunset" : options.environment);
-    if (!environment)
-        return environment.error();
-    scene->environment = std::move(*environment);
-
-    Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / "floor.glb");
-    if (!floor)
-        return floor.error();
-    scene->world.create(Transform{}, MeshInstance{*floor},
-                        Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
 
     std::vector<LoadedKind> kinds;
     for (const Kind& kind : kKinds) {

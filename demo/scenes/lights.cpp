@@ -64,6 +64,8 @@ Result<void> placeObjects(DemoScene& scene, const SceneOptions& options)
     return {};
 }
 
+const Material kMatte{vec3(0.5f), 0, 0};
+
 // The surface blocks the light of others as the solid does that it covers.
 Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::string& light,
                       const std::string& solid, vec3 intensity, const Orbit& orbit)
@@ -72,12 +74,9 @@ Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::
     Result<AssetHandle> body = load(scene, options, solid);
     if (!source || !body)
         return source ? body.error() : source.error();
-    const Material matte{vec3(0.5f), 0, 0};
     scene.world.create(orbitAt(orbit, Transform{}, 0), MeshInstance{*source},
-                       ShadowFieldEmitter{*source, intensity}, ShadowFieldOccluder{*body}, matte,
+                       ShadowFieldEmitter{*source, intensity}, ShadowFieldOccluder{*body}, kMatte,
                        orbit);
-    if (solid == "panel") // what is behind the picture
-        scene.world.create(orbitAt(orbit, Transform{}, 0), MeshInstance{*body}, matte, orbit);
     return {};
 }
 
@@ -85,9 +84,10 @@ Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::
 
 Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
 {
-    auto scene = std::make_unique<DemoScene>();
-    scene->name = "lights";
-    scene->ground = true;
+    Result<std::unique_ptr<DemoScene>> made = makeFloorScene(options, "lights", "courtyard");
+    if (!made)
+        return made;
+    std::unique_ptr<DemoScene> scene = std::move(*made);
     scene->intensity = 0.12f;
     scene->exposure = 1.0f;
     scene->camera = {.target = vec3(0, 0.28f, 0),
@@ -95,16 +95,6 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
                      .yaw = 0.45f,
                      .pitch = 0.55f,
                      .fieldOfView = 0.62f};
-    Result<Environment> environment = loadEnvironment(
-        options.assets, options.environment.empty() ? "courtyard" : options.environment);
-    if (!environment)
-        return environment.error();
-    scene->environment = std::move(*environment);
-    Result<AssetHandle> floor = load(*scene, options, "floor");
-    if (!floor)
-        return floor.error();
-    scene->world.create(Transform{}, MeshInstance{*floor},
-                        Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
 
     constexpr float kHalfTurn = glm::pi<float>();
     Result<void> done = placeObjects(*scene, options);
@@ -118,15 +108,17 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
                          .speed = -0.9f,
                          .phase = kHalfTurn,
                          .bob = 0.15f});
+    const Orbit picture{.center = vec3(0, 0.75f, 0),
+                        .radius = 1.7f,
+                        .speed = 0.12f,
+                        .phase = 1.31f * kHalfTurn, // its back to the camera at first
+                        .aim = 1};
     if (done)
-        done = addLight(*scene, options, "picture_lamp", "panel", vec3(6),
-                        {.center = vec3(0, 0.75f, 0),
-                         .radius = 1.7f,
-                         .speed = 0.12f,
-                         .phase = 1.31f * kHalfTurn, // its back to the camera at first
-                         .aim = 1});
-    if (!done)
-        return done.error();
+        done = addLight(*scene, options, "picture_lamp", "panel", vec3(6), picture);
+    Result<AssetHandle> back = load(*scene, options, "panel"); // what is behind the picture
+    if (!done || !back)
+        return done ? back.error() : done.error();
+    scene->world.create(orbitAt(picture, Transform{}, 0), MeshInstance{*back}, kMatte, picture);
     return scene;
 }
 

@@ -2,7 +2,8 @@
 //
 // Order 4 holds a small light only roughly: its product with the cosine is 6 % too high overhead, a
 // tenth of the light leaks to surfaces that it grazes, and some falls on those that look away. But
-// band 1 of the field is the vector irradiance E = integral of L(w) w dw, and n.E is exactly what a
+// band 1 of the field is the vector irradiance E = integral of L(w) w dw (Gershun, "The Light
+// Field", J. Math. and Physics 18, 1939), and n.E is exactly what a
 // matte surface gets of a light that stands wholly above its horizon. So what the product is good
 // for is the part that arrives, and how much there is to arrive comes from E.
 #ifndef PENUMBRA_SHADERS_SHARED_EMITTER_H

@@ -9,8 +9,8 @@
 #include "shaders/shared/sh.h"
 PENUMBRA_BEGIN
 
-// Grid of a field with one side on all shells, as the GPU holds it: samples [y][x][shell], so that
-// a cell's nodes on neighbouring shells share a cache line (docs/decisions/0005).
+// Grid of a field with one side on all shells, as the GPU holds it: samples [channel][y][x][shell],
+// so that a cell's nodes on neighbouring shells share a cache line (docs/decisions/0005).
 struct FieldGrid {
     uint firstSample;
     uint side;        // nodes per edge of the octahedral map

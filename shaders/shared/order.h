@@ -4,10 +4,11 @@
 //
 // Near and far go by power distance, d^2 - r^2: the points where two spheres have equal power make
 // a plane, and disjoint spheres lie on both sides of it, so a ray from a point meets the spheres in
-// the order of the point's power distances, and no ray from the plane itself meets both. Spheres
-// that overlap are shrunk until they touch, so that the plane stays between their centres: a lamp
-// over a table is before it from above and behind it from below. Concentric ones have no order:
-// the weight is 1/2.
+// the order of the point's power distances, and no ray from the plane itself meets both
+// (Aurenhammer, "Power diagrams: properties, algorithms and applications", SIAM J. Comput. 16(1),
+// 1987). Spheres that overlap are shrunk until they touch, so that the plane stays between their
+// centres: a lamp over a table is before it from above and behind it from below. Concentric ones
+// have no order: the weight is 1/2.
 #ifndef PENUMBRA_SHADERS_SHARED_ORDER_H
 #define PENUMBRA_SHADERS_SHARED_ORDER_H
 #include "shaders/shared/interop.h"

@@ -1,5 +1,6 @@
 // Scene files of the components of tests/runtime/ecs/described.h.
 #include "tests/fuzz/seeds.h"
+#include "tests/runtime/ecs/street_scene.h"
 
 #include <span>
 
@@ -23,28 +24,6 @@ constexpr std::string_view kEntities = R"({
  "future": [1]
 })";
 
-// Prefabs in prefabs, instances with overrides, links into instances.
-constexpr std::string_view kPrefabs = R"({
- "version": 1,
- "prefabs": {
-  "bulb": {"entities": [{"Name": {"value": "bulb"}, "Everything": {"power": 60}}]},
-  "lamp": {"entities": [
-   {"Name": {"value": "post"}, "Place": {"x": 1}},
-   {"Name": {"value": "arm"}, "Parent": {"entity": 0}, "Asleep": {}},
-   {"prefab": "bulb", "Parent": {"entity": 1}, "Everything": {"target": 0}},
-   {"Parent": {"entity": 0}, "Future": {"a": 1}}
-  ]}
- },
- "entities": [
-  {"Name": {"value": "street"}},
-  {"prefab": "lamp", "Parent": {"entity": 0}, "Place": {"y": 2}},
-  {"prefab": "lamp", "Name": {"value": "broken"}, "Place": null,
-   "overrides": {"bulb": {"Everything": {"power": 5}, "Clock": {}}, "arm": {"Asleep": null}, "3": null}},
-  {"Parent": {"entity": [2, "arm"]}, "Everything": {"target": [1, "bulb"]}},
-  {"prefab": "bulb"}
- ]
-})";
-
 FuzzSeed seed(const char* name, std::string_view text)
 {
     const auto bytes = std::as_bytes(std::span(text));
@@ -56,7 +35,7 @@ FuzzSeed seed(const char* name, std::string_view text)
 std::vector<FuzzSeed> sceneSeeds()
 {
     return {seed("empty.json", R"({"version": 1, "entities": []})"),
-            seed("entities.json", kEntities), seed("prefabs.json", kPrefabs)};
+            seed("entities.json", kEntities), seed("prefabs.json", ecs::kStreetScene)};
 }
 
 } // namespace penumbra

@@ -3,6 +3,7 @@
 #include "runtime/ecs/observers.h"
 #include "runtime/ecs/snapshot.h"
 #include "tests/runtime/ecs/described.h"
+#include "tests/runtime/ecs/street_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -310,30 +311,9 @@ TEST_F(SceneFile, ValuesThatCannotBeReadAgainAreNotSaved)
     EXPECT_NE((*saved).warnings[0].find("test.Position"), std::string::npos);
 }
 
-constexpr const char* kStreet = R"({
- "version": 1,
- "prefabs": {
-  "bulb": {"entities": [{"Name": {"value": "bulb"}, "Everything": {"power": 60}}]},
-  "lamp": {"entities": [
-   {"Name": {"value": "post"}, "Place": {"x": 1}},
-   {"Name": {"value": "arm"}, "Parent": {"entity": 0}, "Asleep": {}},
-   {"prefab": "bulb", "Parent": {"entity": 1}, "Everything": {"target": 0}},
-   {"Parent": {"entity": 0}, "Future": {"a": 1}}
-  ]}
- },
- "entities": [
-  {"Name": {"value": "street"}},
-  {"prefab": "lamp", "Parent": {"entity": 0}, "Place": {"y": 2}},
-  {"prefab": "lamp", "Name": {"value": "broken"}, "Place": null,
-   "overrides": {"bulb": {"Everything": {"power": 5}, "Clock": {}}, "arm": {"Asleep": null}, "3": null}},
-  {"Parent": {"entity": [2, "arm"]}, "Everything": {"target": [1, "bulb"]}},
-  {"prefab": "bulb"}
- ]
-})";
-
 TEST_F(SceneFile, PrefabsAreInstancedOverriddenAndSavedAsSuch)
 {
-    load(kStreet);
+    load(kStreetScene);
     ASSERT_EQ(loaded.entities.size(), 5u);
     ASSERT_EQ(world.count(), 1u + 4 + 3 + 1 + 1);
     const Hierarchy& links = world.hierarchy();
@@ -373,7 +353,7 @@ TEST_F(SceneFile, PrefabsAreInstancedOverriddenAndSavedAsSuch)
 
 TEST_F(SceneFile, InstancesTakenApartAreWrittenInFull)
 {
-    load(kStreet);
+    load(kStreetScene);
     const Entity arm = world.hierarchy().childrenOf(loaded.entities[1]).at(0);
     world.clearParent(arm);
     const auto saved = saveScene(world, scene, &assets);

@@ -30,11 +30,11 @@ struct TestScene {
 };
 TestScene makeTestScene();
 
-// Radiance of every receiver by the CPU twin, whatever the camera sees: [radianceCount].
-std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants);
-
 // The same with three lights among the objects: a sphere, the same half inside an object, and a
 // rectangle with a surface of its own.
 TestScene makeLitTestScene();
+
+// Radiance of every receiver by the CPU twin, whatever the camera sees: [radianceCount].
+std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants);
 
 } // namespace penumbra
