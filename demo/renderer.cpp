@@ -71,14 +71,20 @@ Result<void> Renderer::drawFrame(const View& view, Kernel kernel, bool combine)
 Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
 {
     using Clock = std::chrono::steady_clock;
+    const bool onCpu = m_device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
     std::map<std::string, double> milliseconds;
     Result<void> failed;
     const auto time = [&](const char* name, auto&& record) {
+        ZoneTimer timer(m_device, onCpu ? 0 : 1);
         const auto start = Clock::now();
-        Result<void> done = submitAndWait(
-            m_device, [&](VkCommandBuffer cmd) { record(GpuFrame{.cmd = cmd, .slot = m_slot}); });
-        milliseconds[name] =
-            std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        Result<void> done = submitAndWait(m_device, [&](VkCommandBuffer cmd) {
+            timer.begin(cmd);
+            record(GpuFrame{.cmd = cmd, .slot = m_slot});
+            timer.end();
+        });
+        const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
+        const std::vector<ZoneTime> zones = timer.read();
+        milliseconds[name] = zones.empty() ? elapsed.count() : zones.front().milliseconds;
         if (!done)
             failed = done;
     };

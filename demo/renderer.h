@@ -28,8 +28,8 @@ public:
     Result<void> drawFrame(const View& view, Kernel kernel, bool combine = true);
 
     // The passes of the frame last drawn once more, each in a submission of its own: milliseconds
-    // by name, as the CPU's clock sees them. Timestamps will not do on lavapipe, which runs compute
-    // at once and writes timestamps later.
+    // by name, from the GPU's timestamps. On a CPU device (lavapipe) by its clock around the
+    // submission: there compute runs at once and timestamps are written later.
     Result<std::map<std::string, double>> timePasses(Kernel kernel);
 
     Result<void> resize(VkExtent2D extent);
