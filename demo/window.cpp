@@ -1,5 +1,7 @@
 #include "demo/window.h"
 
+#include "demo/editor/editor.h"
+#include "demo/editor/overlay.h"
 #include "demo/renderer.h"
 #include "demo/simulation.h"
 #include "runtime/vk/barriers.h"
@@ -10,6 +12,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <imgui.h>
 
 namespace penumbra {
 
@@ -41,7 +44,7 @@ struct Surface {
 struct Controls {
     Camera camera;
     double cursorX = 0, cursorY = 0;
-    bool paused = false, restart = false;
+    bool paused = false, restart = false, panel = true;
     Kernel kernel = Kernel::Exact;
 };
 
@@ -53,6 +56,8 @@ void onCursor(GLFWwindow* window, double x, double y)
     const auto dx = static_cast<float>(x - c.cursorX), dy = static_cast<float>(y - c.cursorY);
     c.cursorX = x;
     c.cursorY = y;
+    if (Overlay::wantsMouse())
+        return;
     Camera& camera = c.camera;
     if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
         camera.yaw -= dx * kRadiansPerPixel;
@@ -70,6 +75,8 @@ void onCursor(GLFWwindow* window, double x, double y)
 void onScroll(GLFWwindow* window, double, double steps)
 {
     auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
+    if (Overlay::wantsMouse())
+        return;
     c.camera.distance =
         std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
 }
@@ -77,7 +84,7 @@ void onScroll(GLFWwindow* window, double, double steps)
 void onKey(GLFWwindow* window, int key, int, int action, int)
 {
     auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-    if (action != GLFW_PRESS)
+    if (action != GLFW_PRESS || Overlay::wantsKeyboard())
         return;
     if (key == GLFW_KEY_ESCAPE)
         glfwSetWindowShouldClose(window, GLFW_TRUE);
@@ -87,6 +94,8 @@ void onKey(GLFWwindow* window, int key, int, int action, int)
         c.restart = true;
     else if (key == GLFW_KEY_K)
         c.kernel = c.kernel == Kernel::Exact ? Kernel::Literal : Kernel::Exact;
+    else if (key == GLFW_KEY_E)
+        c.panel = !c.panel;
 }
 
 VkExtent2D framebufferExtent(GLFWwindow* window)
@@ -153,6 +162,24 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     return show;
 }
 
+void drawPanel(Editor& editor, Controls& controls, Show& show)
+{
+    ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize({380, 560}, ImGuiCond_FirstUseEver);
+    if (ImGui::Begin("Scene")) {
+        ImGui::Checkbox("pause", &controls.paused);
+        ImGui::SameLine();
+        controls.restart |= ImGui::Button("restart");
+        ImGui::SameLine();
+        bool literal = controls.kernel == Kernel::Literal;
+        if (ImGui::Checkbox("kernel literal", &literal))
+            controls.kernel = literal ? Kernel::Literal : Kernel::Exact;
+        ImGui::Separator();
+        editor.draw(show.scene->world, show.scene->assets);
+    }
+    ImGui::End();
+}
+
 // Frames per second in the title, twice a second.
 class TitleClock {
 public:
@@ -212,8 +239,13 @@ Result<void> runWindow(const DemoOptions& options)
     glfwSetCursorPosCallback(window, onCursor);
     glfwSetScrollCallback(window, onScroll);
     glfwSetKeyCallback(window, onKey);
+    Result<std::unique_ptr<Overlay>> overlay = Overlay::create(
+        *device, window, show->renderer->display().format, show->renderer->ring().framesInFlight());
+    if (!overlay)
+        return overlay.error();
+    Editor editor;
     fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
-               "kernel, Esc: quit\n");
+               "kernel, E: editor, Esc: quit\n");
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();
@@ -227,6 +259,7 @@ Result<void> runWindow(const DemoOptions& options)
         }
         if (controls.restart) {
             controls.restart = false;
+            editor.select({});
             *show = Show{}; // its frames end before the next begin
             Result<Show> again = makeShow(*device, options, extent);
             if (!again)
@@ -241,8 +274,10 @@ Result<void> runWindow(const DemoOptions& options)
         const auto now = std::chrono::steady_clock::now();
         const float seconds = std::chrono::duration<float>(now - last).count();
         last = now;
-        if (!controls.paused)
-            applyChanges(show->simulation->advance(seconds), renderer.scene());
+        (*overlay)->begin();
+        if (controls.panel)
+            drawPanel(editor, controls, *show);
+        applyChanges(show->simulation->advance(controls.paused ? 0 : seconds), renderer.scene());
 
         const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
         Result<GpuFrame> frame =
@@ -252,6 +287,7 @@ Result<void> runWindow(const DemoOptions& options)
         Result<bool> visible = swapchain->acquire(frame->slot, extent);
         if (!visible)
             return visible.error();
+        (*overlay)->record(frame->cmd, renderer.display(), renderer.ring());
         if (*visible)
             copyToWindow(frame->cmd, renderer.display(), *swapchain);
         if (Result<void> ended = renderer.endFrame(swapchain->waits(), swapchain->signals());

@@ -84,7 +84,8 @@ struct RigidBody {
     std::uint64_t body = 0; // id in the PhysicsWorld
 };
 template <>
-inline constexpr auto ecs::kFields<RigidBody> = ecs::fields(PENUMBRA_FIELD(RigidBody, body));
+inline constexpr auto ecs::kFields<RigidBody> = ecs::fields(PENUMBRA_FIELD(RigidBody, body,
+                                                                           .kind = "body"));
 
 // What the picture is seen from.  Written by: spawn, input.  Read by: frame.
 struct Camera {

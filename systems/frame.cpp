@@ -233,7 +233,8 @@ Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses&
         {targets.radiance, "radiance image", kRadianceFormat,
          VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
         {targets.depth, "depth image", kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
-        {targets.display, "display image", kDisplayFormat, VK_IMAGE_USAGE_STORAGE_BIT},
+        {targets.display, "display image", kDisplayFormat,
+         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
     };
     for (const auto& [image, name, format, usage] : images) {
         Result<Image> made =

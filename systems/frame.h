@@ -27,7 +27,8 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights);
 struct FrameTargets {
     Image radiance; // RGBA16F, linear
     Image depth;
-    Image display; // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
+    // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL. May be drawn on.
+    Image display;
     UniqueSampler sampler;
     VkDescriptorSet postSet = VK_NULL_HANDLE;
     DescriptorSets sets;

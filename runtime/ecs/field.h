@@ -53,7 +53,7 @@ struct Field {
     double min = -kUnbounded;       // of every number in it, inclusive
     double max = kUnbounded;
     std::span<const std::string_view> names; // of a choice
-    std::string_view kind;                   // of an asset: "mesh"
+    std::string_view kind; // of a handle: "mesh", "body"; editors show it and do not edit it
 };
 
 // What a description adds to a member.
