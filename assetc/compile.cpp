@@ -5,20 +5,45 @@
 #include "assetc/import/import.h"
 #include "assetc/lods.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace penumbra {
+
+namespace {
+
+// A float keeps 24 bits of a coordinate: far from the origin few are left for the shape.
+void warnFarFromOrigin(const MeshAsset& mesh, std::vector<std::string>& warnings)
+{
+    constexpr float kFar = 1e4f; // radii; a step is then about 1/1000 of the radius
+    const vec3 center = 0.5f * (mesh.boundsMin + mesh.boundsMax);
+    const float distance = length(center), radius = 0.5f * length(mesh.boundsMax - mesh.boundsMin);
+    if (!(distance > kFar * radius))
+        return;
+    const float largest = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    warnings.push_back(fmt::format(
+        "lies {:.3g} m from the origin, {:.3g} times its radius of {:.3g} m: coordinates there are "
+        "whole steps of {:.2g} m, so its shape is coarse; move it to the origin",
+        distance, distance / radius, radius, std::nextafter(largest, 2 * largest) - largest));
+}
+
+} // namespace
 
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
-                                   std::vector<AskedFile>* asked)
+                                   SourceFiles* files)
 {
     std::vector<StageTime> times;
     auto imported = [&] {
         // Triangles of the whole file in its world space.
         const StageTimer timer(times, "import");
-        return importMesh(source, asked);
+        return importMesh(source, files ? &files->asked : nullptr);
     }();
     if (!imported)
         return imported.error();
+    if (files)
+        if (const auto kept = files->refuseOverwrite(source); !kept)
+            return kept.error();
     auto asset = compileMesh(std::move(*imported), source.string(), options, progress);
     if (asset)
         asset->report.times.insert(asset->report.times.begin(), times.begin(), times.end());
@@ -111,6 +136,7 @@ Result<void> prepareMesh(CompiledAsset& asset, const std::string& place,
         if (const auto quantised = quantizeMesh(asset.mesh, options); !quantised)
             return fail(quantised.error(), place);
     }
+    warnFarFromOrigin(asset.mesh, report.warnings);
     const float size = length(asset.mesh.boundsMax - asset.mesh.boundsMin);
     if (!(size > 4 * kMinFieldRadius && size < kMaxCoordinate)) // its bounding sphere has a field
         return Error{fmt::format("{}: {} m across, allowed {} to {} m; scale it, its unit is the "

@@ -4,8 +4,8 @@
 #include "assetc/adapt.h"
 #include "assetc/bake.h"
 #include "assetc/import/clean.h"
-#include "assetc/import/folder.h"
 #include "assetc/order.h"
+#include "assetc/source_files.h"
 #include "assetc/stage_timer.h"
 #include "assetc/target_error.h"
 #include "assetc/verify.h"
@@ -43,10 +43,10 @@ struct CompiledAsset {
 };
 
 // Same input, options and version: same bytes, whatever the thread count. Uses the TBB arena of the
-// caller. `asked` gets the other files that the source names.
+// caller. `files`, if any, get the other files that the source names; none of them is replaced.
 Result<CompiledAsset> compileAsset(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
-                                   std::vector<AskedFile>* asked = nullptr);
+                                   SourceFiles* files = nullptr);
 
 // The same behind the import; `place` names the mesh in errors.
 Result<CompiledAsset> compileMesh(ImportedMesh imported, const std::string& place,

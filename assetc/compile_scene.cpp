@@ -79,9 +79,9 @@ std::string sceneJson(const ImportedScene& scene, const std::vector<SceneAsset>&
 
 Result<CompiledScene> compileScene(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
-                                   std::vector<AskedFile>* asked)
+                                   SourceFiles* files)
 {
-    auto scene = importScene(source, asked);
+    auto scene = importScene(source, files ? &files->asked : nullptr);
     if (!scene)
         return scene.error();
     if (scene->meshes.empty())
@@ -90,8 +90,15 @@ Result<CompiledScene> compileScene(const std::filesystem::path& source,
     CompiledScene out;
     out.warnings = std::move(scene->warnings);
     std::set<std::string> taken;
-    for (MeshAsset& mesh : scene->meshes) {
-        const std::string file = fileName(mesh.name, taken);
+    std::vector<std::string> parts; // [scene->meshes.size()] files
+    for (const MeshAsset& mesh : scene->meshes)
+        parts.push_back(fileName(mesh.name, taken));
+    if (files)
+        if (const auto kept = files->refuseOverwrite(source, parts); !kept)
+            return kept.error();
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        MeshAsset& mesh = scene->meshes[i];
+        const std::string& file = parts[i];
         mesh.materials = scene->materials;
         mesh.images = scene->images;
         auto asset = compileMesh({std::move(mesh), {}},

@@ -18,9 +18,9 @@ struct CompiledScene {
 
 inline constexpr const char* kSceneFile = "scene.json";
 
-// Same input, options and version: same bytes. `asked` gets the other files that the source names.
+// Same input, options and version: same bytes. `files`, if any, as of compileAsset.
 Result<CompiledScene> compileScene(const std::filesystem::path& source,
                                    const CompileOptions& options, Progress& progress,
-                                   std::vector<AskedFile>* asked = nullptr);
+                                   SourceFiles* files = nullptr);
 
 } // namespace penumbra

@@ -175,15 +175,20 @@ Result<Environment> importEnvironment(const std::filesystem::path& path)
     return environmentFromSource(std::move(*source));
 }
 
-std::string mendedText(const EnvironmentStatistics& statistics)
+std::vector<std::string> environmentWarnings(const EnvironmentStatistics& statistics)
 {
+    std::vector<std::string> warnings;
     std::string text;
     if (statistics.negative > 0)
         text = counted(statistics.negative, "pixel") + " with a negative channel";
     if (statistics.absurd > 0)
         text += (text.empty() ? "" : " and ") + counted(statistics.absurd, "absurd pixel");
     const bool one = statistics.negative + statistics.absurd == 1;
-    return text.empty() ? text : text + (one ? " was clamped" : " were clamped");
+    if (!text.empty())
+        warnings.push_back(text + (one ? " was clamped" : " were clamped"));
+    if (!(statistics.maxLuminance > 0))
+        warnings.emplace_back("the map is black and lights nothing; check what it was saved from");
+    return warnings;
 }
 
 std::string environmentReport(const Environment& environment)

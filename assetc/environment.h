@@ -9,6 +9,7 @@
 //                                kAbsurdLuminance: it is lowered to the power of the others, or to
 //                                kAbsurdLuminance. A real sun in a map of usual size stays below
 //                                (2): of 29 published maps none is touched.
+//   EXPOSURE lines of a .hdr     undone: the map holds radiance, as Radiance defines the lines
 //   larger than 512 x 256        box filter with solid-angle weights, which keeps the power of
 //   every region
 #pragma once
@@ -51,8 +52,8 @@ Environment environmentFromSource(EnvironmentSource source);
 
 Result<Environment> importEnvironment(const std::filesystem::path& path);
 
-// "3 pixels with a negative channel and 1 absurd pixel were clamped"; empty where none was.
-std::string mendedText(const EnvironmentStatistics& statistics);
+// "3 pixels with a negative channel and 1 absurd pixel were clamped", where some were; a black map.
+std::vector<std::string> environmentWarnings(const EnvironmentStatistics& statistics);
 
 // JSON: {"map":[w,h],"source":[w,h],"negative","absurd","clampedAt","meanLuminance","maxLuminance",
 // "energyShare":{"order4","order6"}, "sh4":[[r,g,b] x 16]}. Ends in a line feed.

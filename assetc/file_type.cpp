@@ -72,6 +72,20 @@ bool hasAll(const nlohmann::json& object, std::initializer_list<const char*> key
                        [&](const char* key) { return object.contains(key); });
 }
 
+bool isInspection(const nlohmann::json& document)
+{
+    constexpr std::array kTypes = {"mesh",
+                                   "mesh source",
+                                   "environment",
+                                   "manifest",
+                                   "light description",
+                                   "environment source",
+                                   "scene",
+                                   "report"};
+    return hasAll(document, {"type", "bytes"}) &&
+           std::find(kTypes.begin(), kTypes.end(), document["type"]) != kTypes.end();
+}
+
 // The reports of all commands. Some have members of what they are about, but none a version.
 RecognisedFile recogniseReport(const nlohmann::json& document)
 {
@@ -81,11 +95,11 @@ RecognisedFile recogniseReport(const nlohmann::json& document)
     const char* what =
         hasAll(document, {"manifest", "totals"})             ? "a report of assetc build"
         : hasAll(document, {"source", "assets", "warnings"}) ? "a report of assetc bake"
-        : hasAll(document, {"bytes", "light", "seconds"})    ? "a report of assetc light"
-        : hasAll(document, {"bytes", "seconds"})             ? "a report of assetc bake"
+        : hasAll(document, {"source", "light", "seconds"})   ? "a report of assetc light"
+        : hasAll(document, {"source", "clean", "seconds"})   ? "a report of assetc bake"
         : hasAll(document, {"map", "energyShare"})           ? "a report of assetc environment"
         : hasAll(document, {"file", "valid", "problems"})    ? "a report of assetc validate"
-        : hasAll(document, {"type", "bytes"})                ? "a report of assetc inspect"
+        : isInspection(document)                             ? "a report of assetc inspect"
                                                              : nullptr;
     return what ? RecognisedFile{FileType::Report, what, kRead} : RecognisedFile{};
 }
@@ -133,14 +147,6 @@ bool looksLikeObj(std::string_view text)
     return known > 0;
 }
 
-bool endsInObj(const std::filesystem::path& name)
-{
-    std::string ending = name.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending == ".obj";
-}
-
 const char* nameOf(FileType wanted)
 {
     return wanted == FileType::Manifest            ? "a manifest"
@@ -169,7 +175,7 @@ RecognisedFile recogniseHead(std::span<const std::byte> bytes, const std::filesy
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin != std::string_view::npos && (text[begin] == '{' || text[begin] == '['))
         return {FileType::OtherJson, {}, {}};
-    if (looksLikeObj(text) || endsInObj(name))
+    if (looksLikeObj(text) || endingOf(name) == ".obj")
         return {FileType::MeshSource, "a Wavefront OBJ mesh", kBake};
     return {FileType::Other, "no file that assetc knows",
             "it reads meshes as glTF (.glb, .gltf) and OBJ (.obj), maps as OpenEXR (.exr) and "
@@ -188,6 +194,14 @@ RecognisedFile recogniseFile(std::span<const std::byte> bytes, const std::filesy
 std::string fileTypeText(const RecognisedFile& file)
 {
     return file.what + "; " + file.remedy;
+}
+
+std::string endingOf(const std::filesystem::path& name)
+{
+    std::string ending = name.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
 }
 
 Result<std::vector<std::byte>> readInput(const std::filesystem::path& path, FileType wanted,

@@ -42,6 +42,9 @@ RecognisedFile recogniseHead(std::span<const std::byte> bytes, const std::filesy
 // "an OpenEXR picture; compile it with assetc environment".
 std::string fileTypeText(const RecognisedFile& file);
 
+// The extension in lower case: ".obj".
+std::string endingOf(const std::filesystem::path& name);
+
 // The bytes of a file that is of the `wanted` kind, for its reader; all commands read their inputs
 // by it and so say the same of a wrong one. OtherJson passes for a kind that is JSON: its reader
 // knows what is missing. Error, with the path: cannot be read, another kind, larger than

@@ -83,14 +83,12 @@ void inspectSource(const std::filesystem::path& path, const RecognisedFile& file
             });
         else
             result.problems.push_back(environment.error());
-    } else if (auto light = readLightInput(path, &asked)) {
+    } else if (auto light = readLightInput(path, result.problems, &asked)) {
         describe(result, [&](bool json) {
             return describeLightSpec(file, light->spec, asked, bytes, json);
         });
         if (light->mesh)
             checkMesh(std::move(*light->mesh), path.string() + ": light.source", result);
-    } else {
-        result.problems.push_back(light.error());
     }
 }
 

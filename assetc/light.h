@@ -28,9 +28,9 @@ struct CompiledLight {
 };
 
 // Same input, options and version: same bytes, whatever the thread count. Uses the TBB arena of the
-// caller. Error: what is wrong with the spec, its texture or its mesh. `asked`, if any, gets the
-// files that the source names, of a source that is refused too.
+// caller. Error: all that is wrong with the spec, its texture or its mesh, a line each. `files`, if
+// any, as of compileAsset.
 Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
-                                   Progress& progress, std::vector<AskedFile>* asked = nullptr);
+                                   Progress& progress, SourceFiles* files = nullptr);
 
 } // namespace penumbra

@@ -1,10 +1,13 @@
 // assetc: the command line of the asset compiler. Says what was asked; assetc/commands does it.
 #include "assetc/commands/commands.h"
 #include "assetc/commands/usage.h"
+#include "assetc/option_rules.h"
 #include "assets/mesh_format.h"
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
+#include <csignal>
 #include <optional>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -14,34 +17,54 @@ namespace penumbra {
 
 namespace {
 
-std::string checkSide(const std::string& text)
-{
-    for (unsigned side = 3; side <= kMaxFieldSide; side = 2 * side - 1)
-        if (text == std::to_string(side))
-            return {};
-    return fmt::format("\"{}\" is not 2^k + 1 from 3 to {}", text, kMaxFieldSide);
-}
-
 // CLI::Range lets NaN pass and says of text that it is out of range.
-template <class Number>
-CLI::Validator numberRange(Number min, Number max)
+CLI::Validator follows(const OptionRule& rule)
 {
-    return {[min, max](std::string& text) {
-                Number value = 0;
+    return {[&rule](std::string& text) {
+                double value = 0;
                 const char* last = text.data() + text.size();
                 const auto [end, error] = std::from_chars(text.data(), last, value);
-                return error == std::errc{} && end == last && value >= min && value <= max
-                           ? std::string()
-                           : fmt::format("\"{}\" is not a {}number from {} to {}", text,
-                                         std::is_integral_v<Number> ? "whole " : "", min, max);
+                const bool plain = rule.value == OptionRule::Value::Number ||
+                                   text.find_first_not_of("0123456789") == std::string::npos;
+                const std::string wrong =
+                    whyNot(rule, error == std::errc{} && end == last && plain ? value : NAN);
+                return wrong.empty() ? wrong : fmt::format("\"{}\" is {}", text, wrong);
             },
-            fmt::format("{} to {}", min, max)};
+            fmt::format("{} to {}", rule.min, rule.max)};
 }
 
-std::string checkEven(const std::string& text)
+template <class Number>
+CLI::Option* addOption(CLI::App* command, const OptionRule& rule, Number& value, const char* help)
 {
-    return !text.empty() && (text.back() - '0') % 2 == 0 ? std::string()
-                                                         : fmt::format("\"{}\" is not even", text);
+    return command->add_option(rule.flag, value, help)->check(follows(rule));
+}
+
+void addJobs(CLI::App* command, unsigned& jobs)
+{
+    static constexpr OptionRule kJobsRule{"--jobs", "", OptionRule::Value::Whole, 1, 1024};
+    addOption(command, kJobsRule, jobs, "Threads; all processors by default");
+}
+
+void addFieldOptions(CLI::App* command, std::uint32_t& shells, std::uint32_t& side,
+                     std::uint32_t& directions, const char* directionsHelp)
+{
+    addOption(command, kShellsRule, shells, "Shells of the field")->capture_default_str();
+    addOption(command, kMaxSideRule, side, "Nodes along a shell's edge, 2^k + 1")
+        ->capture_default_str();
+    addOption(command, kDirectionsRule, directions, directionsHelp)->capture_default_str();
+}
+
+// Throws as the parser does.
+void refuseConflicts(const CLI::App& command)
+{
+    const auto isGiven = [&](const OptionRule& rule) {
+        const CLI::Option* option = command.get_option_no_throw(rule.flag);
+        return option != nullptr && option->count() > 0;
+    };
+    for (const OptionConflict& conflict : optionConflicts())
+        if (isGiven(*conflict.option) && isGiven(*conflict.other))
+            throw CLI::ExcludesError(conflictText(conflict, &OptionRule::flag),
+                                     CLI::ExitCodes::ExcludesError);
 }
 
 int run(int argc, char** argv)
@@ -62,46 +85,21 @@ int run(int argc, char** argv)
     bool perNode = false;
     bakeCommand->add_flag("--per-node", perNode,
                           "An asset per rigid mesh and a scene.json that places them");
-    bakeCommand->add_option("--lods", bake.options.lods, "Levels of detail, each half of the last")
-        ->check(numberRange(0u, kMaxMeshLods))
+    addOption(bakeCommand, kLodsRule, bake.options.lods, "Levels of detail, each half of the last")
         ->capture_default_str();
-    CLI::Option* shells =
-        bakeCommand->add_option("--shells", bake.options.bake.shells, "Shells of the field")
-            ->check(numberRange(2u, kMaxFieldShells))
-            ->capture_default_str();
-    CLI::Option* maxSide = bakeCommand
-                               ->add_option("--max-side", bake.options.bake.side,
-                                            "Nodes along a shell's edge, 2^k + 1")
-                               ->check(CLI::Validator(checkSide, "2^k+1"))
-                               ->capture_default_str();
-    CLI::Option* directions = bakeCommand
-                                  ->add_option("--directions", bake.options.bake.directions,
-                                               "Directions per sample, even")
-                                  ->check(numberRange(2u, 65536u))
-                                  ->check(CLI::Validator(checkEven, "even"))
-                                  ->capture_default_str();
-    bakeCommand
-        ->add_option("--threshold", bake.options.adaptThreshold,
-                     "Error up to which a shell takes a coarser grid (Tamura 2006, Eq. 1); 0: all "
-                     "shells keep theirs")
-        ->check(numberRange(0.0, 1.0))
+    addFieldOptions(bakeCommand, bake.options.bake.shells, bake.options.bake.side,
+                    bake.options.bake.directions, "Directions per sample, even");
+    addOption(bakeCommand, kThresholdRule, bake.options.adaptThreshold,
+              "Error up to which a shell takes a coarser grid (Tamura 2006, Eq. 1); 0: all shells "
+              "keep theirs")
         ->capture_default_str();
-    CLI::Option* targetError =
-        bakeCommand
-            ->add_option(
-                "--target-error", bake.options.targetError,
-                "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
-                "threshold")
-            ->check(numberRange(1e-4, 1.0));
-    CLI::Option* noFieldFlag = bakeCommand->add_flag("--no-field", noField, "Self-visibility only");
-    for (CLI::Option* option : {shells, maxSide, directions, noFieldFlag})
-        targetError->excludes(option);
-    bakeCommand
-        ->add_flag("--verify", bake.options.verify,
-                   "Compare a sample of the field with traced rays")
-        ->excludes(noFieldFlag);
-    bakeCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(numberRange(1u, 1024u));
+    addOption(bakeCommand, kTargetErrorRule, bake.options.targetError,
+              "Rms error to reach (visibility, 0 to 1): picks shells, side, directions and "
+              "threshold");
+    bakeCommand->add_flag(kFieldRule.flag, noField, "Self-visibility only");
+    bakeCommand->add_flag(kVerifyRule.flag, bake.options.verify,
+                          "Compare a sample of the field with traced rays");
+    addJobs(bakeCommand, jobs);
     bakeCommand->add_option("--report", bake.report, "Write what was done as JSON");
 
     LightArguments light;
@@ -110,27 +108,14 @@ int run(int argc, char** argv)
                  "its radiance field");
     lightCommand->add_option("SPEC", light.input, ".json")->required();
     lightCommand->add_option("-o,--output", light.output, "OUT.glb")->required();
-    lightCommand->add_option("--shells", light.options.shells, "Shells of the field")
-        ->check(numberRange(2u, kMaxFieldShells))
+    addFieldOptions(lightCommand, light.options.shells, light.options.side,
+                    light.options.directions,
+                    "Rays per sample of a mesh, even; other shapes need none");
+    addOption(lightCommand, kThresholdRule, light.options.adaptThreshold,
+              "Error up to which a shell takes a coarser grid, as a part of the light at the "
+              "brightest place; 0: all shells keep --max-side")
         ->capture_default_str();
-    lightCommand
-        ->add_option("--max-side", light.options.side, "Nodes along a shell's edge, 2^k + 1")
-        ->check(CLI::Validator(checkSide, "2^k+1"))
-        ->capture_default_str();
-    lightCommand
-        ->add_option("--directions", light.options.directions,
-                     "Rays per sample of a mesh, even; other shapes need none")
-        ->check(numberRange(2u, 65536u))
-        ->check(CLI::Validator(checkEven, "even"))
-        ->capture_default_str();
-    lightCommand
-        ->add_option("--threshold", light.options.adaptThreshold,
-                     "Error up to which a shell takes a coarser grid, as a part of the light at "
-                     "the brightest place; 0: all shells keep --max-side")
-        ->check(numberRange(0.0, 1.0))
-        ->capture_default_str();
-    lightCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(numberRange(1u, 1024u));
+    addJobs(lightCommand, jobs);
     lightCommand->add_option("--report", light.report, "Write what was done as JSON");
 
     EnvironmentArguments environment;
@@ -145,8 +130,7 @@ int run(int argc, char** argv)
         app.add_subcommand("build", "Compile what changed among the assets that a manifest lists");
     buildCommand->add_option("MANIFEST", build.manifest, "See docs/build_manifest.md")->required();
     buildCommand->add_option("-o,--output", build.output, "Folder of the outputs")->required();
-    buildCommand->add_option("--jobs", jobs, "Threads; all processors by default")
-        ->check(numberRange(1u, 1024u));
+    addJobs(buildCommand, jobs);
     buildCommand->add_flag("--watch", build.watch, "Build again at each change, until interrupted");
     buildCommand->add_option("--report", build.report, "Write what was done as JSON");
 
@@ -177,6 +161,7 @@ int run(int argc, char** argv)
                 });
     try {
         app.parse(argc, argv);
+        refuseConflicts(*bakeCommand);
     } catch (const CLI::ParseError& error) {
         const bool asked = error.get_exit_code() == 0; // for help or version
         return asked ? app.exit(error) : refuseUsage(app, error);
@@ -205,6 +190,7 @@ int main(int argc, char** argv)
 {
     spdlog::set_default_logger(spdlog::stderr_logger_st("assetc"));
     spdlog::set_pattern("%n: %l: %v");
+    std::signal(SIGXFSZ, SIG_IGN); // a write beyond the limit fails, and its temporary file goes
     try {
         return penumbra::run(argc, argv);
     } catch (const std::bad_alloc&) {

@@ -3,6 +3,7 @@
 // a cut file.
 #include "assetc/environment.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -67,6 +68,20 @@ private:
     std::size_t m_at = 0;
 };
 
+// Lines EXPOSURE=number say what the pixels were multiplied by, one after the other. False: a
+// number that cannot be. A line's end may be a carriage return too.
+bool takeExposure(std::string_view line, double& exposure)
+{
+    constexpr std::string_view kKey = "EXPOSURE=";
+    if (!line.starts_with(kKey))
+        return true;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t", kKey.size()), line.size()));
+    double factor = 0;
+    const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), factor);
+    exposure *= factor;
+    return error == std::errc{} && exposure >= 1e-6 && exposure <= 1e6;
+}
+
 bool parseSize(std::string_view line, std::uint32_t& height, std::uint32_t& width)
 {
     const auto number = [&](std::string_view prefix, std::uint32_t& value) {
@@ -105,10 +120,16 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, Pi
 {
     Reader reader(bytes);
     if (!reader.line().starts_with("#?"))
-        return Error{"not a Radiance picture"};
+        return Error{"not a Radiance picture; save it as .hdr or .exr"};
     bool rgbe = false;
-    for (std::string_view line = reader.line(); !line.empty(); line = reader.line())
+    double exposure = 1; // what the pixels were multiplied by, in all
+    for (std::string_view line = reader.line(); !line.empty(); line = reader.line()) {
         rgbe |= line == "FORMAT=32-bit_rle_rgbe";
+        if (!takeExposure(line, exposure))
+            return Error{
+                fmt::format("\"{}\" is no factor from 1e-6 to 1e6; mend or delete the line",
+                            line.substr(0, 40))};
+    }
     EnvironmentSource source;
     if (!parseSize(reader.line(), source.height, source.width) || reader.failed)
         return Error{"no size line of the form \"-Y height +X width\"; save it upright, or again "
@@ -127,6 +148,7 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, Pi
             "{} bytes of pixels, too few for {} x {}: the file is cut; copy or save it again",
             reader.left(), source.width, source.height)};
     source.pixels.reserve(pixels);
+    const auto brighter = static_cast<float>(1 / exposure);
     std::vector<Rgbe> row(source.width);
     for (std::uint32_t y = 0; y < source.height; ++y) {
         const Rgbe first = reader.pixel();
@@ -144,7 +166,7 @@ Result<EnvironmentSource> decodeRadianceHdr(std::span<const std::byte> bytes, Pi
             return Error{fmt::format("row {} of {} is damaged or cut; copy or save it again", y,
                                      source.height)};
         for (const Rgbe& pixel : row)
-            source.pixels.push_back(radiance(pixel));
+            source.pixels.push_back(radiance(pixel) * brighter);
     }
     return source;
 }

@@ -1,10 +1,12 @@
 #include "assetc/scene_file.h"
 
-#include "assetc/file_type.h"
 #include "assetc/import/folder.h"
+#include "assetc/json_input.h"
 #include "assets/light_json.h"
+#include "assets/mesh_codec.h"
 #include "assets/shadow_field.h"
 #include "runtime/ecs/scene_file.h"
+#include "runtime/file.h"
 
 #include <limits>
 
@@ -40,6 +42,23 @@ void checkTransform(const JsonReader& transform)
     static_cast<void>(transform.number("scale", std::numeric_limits<float>::min(), kMaxCoordinate));
 }
 
+// The file of a part is whole.
+void checkPart(const JsonReader& asset, const std::string& name, const std::filesystem::path& file)
+{
+    const auto bytes = readFile(file, kMaxMeshAssetBytes);
+    if (!bytes) {
+        asset.refuse("names a file that cannot be used: " + bytes.error().message);
+        return;
+    }
+    if (const RecognisedFile part = recogniseFile(*bytes, file); part.type != FileType::MeshAsset) {
+        asset.refuse(
+            fmt::format("names \"{}\", which is no compiled mesh: {}", name, fileTypeText(part)));
+        return;
+    }
+    for (const Error& problem : checkMeshAsset(*bytes))
+        asset.refuse(fmt::format("names \"{}\", which is damaged: {}", name, problem.message));
+}
+
 void readAsset(const JsonReader& component, const std::filesystem::path& folder, SceneFile& scene)
 {
     component.refuseOthers({"asset"});
@@ -51,6 +70,8 @@ void readAsset(const JsonReader& component, const std::filesystem::path& folder,
         asset.refuse("is empty; name a compiled mesh beside the scene");
     else if (const auto found = resolveInFolder(folder, name); !found)
         asset.refuse("names a file that cannot be used: " + found.error().message);
+    else
+        checkPart(asset, name, *found);
 }
 
 void readEntity(const JsonReader& entity, std::size_t index, const std::filesystem::path& folder,
@@ -79,26 +100,16 @@ void readEntity(const JsonReader& entity, std::size_t index, const std::filesyst
 
 std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonProblems& problems)
 {
-    const auto bytes = readInput(file, FileType::Scene, kMaxSceneBytes);
-    if (!bytes) {
-        problems.push_back(bytes.error());
-        return std::nullopt;
-    }
-    const auto document =
-        parseJson({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, kMaxSceneBytes);
-    if (!document) {
-        problems.push_back(fail(document.error(), file.string()));
-        return std::nullopt;
-    }
-    JsonProblems found;
-    const JsonReader root(*document, "", found);
-    root.checkVersion(kSceneVersion);
-    SceneFile scene;
-    const JsonReader entities = root.member("entities");
-    scene.entities = entities.length(kMaxEntities);
-    for (std::size_t i = 0; i < scene.entities; ++i)
-        readEntity(entities.element(i), i, file.parent_path(), scene);
-    if (root.has("lights")) {
+    const auto read = [&](const nlohmann::json& document, JsonProblems& found) {
+        const JsonReader root(document, "", found);
+        root.checkVersion(kSceneVersion);
+        SceneFile scene;
+        const JsonReader entities = root.member("entities");
+        scene.entities = entities.length(kMaxEntities);
+        for (std::size_t i = 0; i < scene.entities; ++i)
+            readEntity(entities.element(i), i, file.parent_path(), scene);
+        if (!root.has("lights"))
+            return scene;
         const JsonReader lights = root.member("lights");
         scene.lights = lights.length(kMaxEntities);
         for (std::size_t i = 0; i < scene.lights; ++i) {
@@ -108,12 +119,9 @@ std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonPr
                 light.member("entity").refuse(
                     fmt::format("is none of the {} entities", scene.entities));
         }
-    }
-    for (const Error& problem : found)
-        problems.push_back(fail(problem, file.string()));
-    if (!found.empty())
-        return std::nullopt;
-    return scene;
+        return scene;
+    };
+    return readJsonInput<SceneFile>(file, FileType::Scene, kMaxSceneBytes, problems, read);
 }
 
 } // namespace penumbra

@@ -14,8 +14,8 @@ struct SceneFile {
     std::set<std::string> assets; // files beside it
 };
 
-// The scene, or at least one problem, each with its place. An asset that is not there is a problem;
-// what is in it is not looked at.
+// The scene, or at least one problem, each with its place. Assets are read to their end: one that
+// is missing, damaged or no compiled mesh is a problem, where the scene names it first.
 std::optional<SceneFile> readSceneFile(const std::filesystem::path& file, JsonProblems& problems);
 
 } // namespace penumbra

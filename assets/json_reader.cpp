@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace penumbra {
 
@@ -47,20 +48,89 @@ std::string syntaxPlace(std::string_view text)
     return {};
 }
 
-} // namespace
+// At most 40 bytes, escaped: no control characters on a terminal.
+std::string quotedText(const std::string& text)
+{
+    constexpr std::size_t kMost = 40;
+    const nlohmann::json value = text.size() > kMost ? text.substr(0, kMost - 3) + "..." : text;
+    return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
 
-Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
+// Listens to the parser, which itself keeps the last of two members of a name.
+class DoubledMembers {
+public:
+    explicit DoubledMembers(JsonProblems& problems) : m_problems(problems) {}
+
+    bool operator()(int, nlohmann::json::parse_event_t event, const nlohmann::json& value)
+    {
+        using Event = nlohmann::json::parse_event_t;
+        if (event == Event::key) {
+            m_open.back().key = value.get_ref<const std::string&>();
+            if (!m_open.back().keys.insert(m_open.back().key).second)
+                refuse();
+        } else if (event == Event::object_end || event == Event::array_end) {
+            m_open.pop_back();
+        } else {
+            if (!m_open.empty())
+                ++m_open.back().index;
+            if (event != Event::value)
+                m_open.push_back({event == Event::array_start, {}, {}, 0});
+        }
+        return true;
+    }
+
+private:
+    struct Level {
+        bool isArray;
+        std::set<std::string> keys;
+        std::string key;
+        std::size_t index; // of an array, behind the element that is read
+    };
+
+    void refuse() const
+    {
+        std::string place;
+        for (std::size_t i = 0; i + 1 < m_open.size(); ++i)
+            if (m_open[i].isArray)
+                place += fmt::format("[{}]", m_open[i].index - 1);
+            else if (const std::string key = quotedText(m_open[i].key); key.size() > 2)
+                place += fmt::format("{}{}", place.empty() ? "" : ".",
+                                     std::string_view(key).substr(1, key.size() - 2));
+        m_problems.push_back(
+            {fmt::format("{}{}has {} twice; delete one", place, place.empty() ? "" : " ",
+                         quotedText(m_open.back().key))});
+    }
+
+    std::vector<Level> m_open;
+    JsonProblems& m_problems;
+};
+
+Result<nlohmann::json> parse(std::string_view text, std::size_t maxBytes,
+                             const nlohmann::json::parser_callback_t& listener)
 {
     if (text.size() > maxBytes)
         return Error{fmt::format("JSON of {} bytes, more than {}", text.size(), maxBytes)};
     if (nestingDepth(text) > kMaxJsonDepth)
         return Error{fmt::format("JSON nested deeper than {} levels", kMaxJsonDepth)};
-    nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    nlohmann::json document = nlohmann::json::parse(text, listener, false);
     if (document.is_discarded())
         return Error{"not valid JSON" + syntaxPlace(text)};
     if (!document.is_object())
         return Error{"JSON whose root is not an object"};
     return document;
+}
+
+} // namespace
+
+Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes)
+{
+    return parse(text, maxBytes, nullptr);
+}
+
+Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes,
+                                 JsonProblems& problems)
+{
+    return parse(text, maxBytes, DoubledMembers(problems));
 }
 
 JsonReader JsonReader::member(const char* key) const
@@ -128,6 +198,11 @@ float JsonReader::asNumber(float min, float max) const
     return static_cast<float>(value);
 }
 
+double JsonReader::anyNumber() const
+{
+    return m_value && m_value->is_number() ? m_value->get<double>() : HUGE_VAL;
+}
+
 std::string JsonReader::asText() const
 {
     if (!m_value)
@@ -150,7 +225,7 @@ bool JsonReader::asFlag() const
     return m_value->get<bool>();
 }
 
-void JsonReader::refuseOthers(std::initializer_list<std::string_view> known) const
+void JsonReader::refuseOthers(const std::vector<std::string_view>& known) const
 {
     if (!m_value)
         return;
@@ -160,10 +235,8 @@ void JsonReader::refuseOthers(std::initializer_list<std::string_view> known) con
     }
     for (const auto& [key, value] : m_value->items())
         if (std::find(known.begin(), known.end(), key) == known.end())
-            refuse(fmt::format("has no member \"{}\"; known: {}", key.substr(0, 60),
-                               known.size() > 0
-                                   ? fmt::format("{}", fmt::join(known.begin(), known.end(), ", "))
-                                   : "none"));
+            refuse(fmt::format("has the unknown member {}; known: {}", quotedText(key),
+                               known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
 std::uint64_t JsonReader::count(const char* key, std::uint64_t max) const
@@ -202,12 +275,8 @@ std::string JsonReader::quoted() const
         return fmt::format("an array of {}", m_value->size());
     if (m_value->is_object())
         return "an object";
-    constexpr std::size_t kMost = 40;
-    nlohmann::json value = *m_value;
-    if (value.is_string() && value.get_ref<const std::string&>().size() > kMost)
-        value = value.get_ref<const std::string&>().substr(0, kMost - 3) + "...";
-    // Escaped: no control characters on a terminal.
-    return value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    return m_value->is_string() ? quotedText(m_value->get_ref<const std::string&>())
+                                : m_value->dump();
 }
 
 void JsonReader::refuse(const std::string& what) const

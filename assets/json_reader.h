@@ -12,7 +12,6 @@
 #include "runtime/result.h"
 
 #include <cstdint>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -29,6 +28,11 @@ Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes);
 
 using JsonProblems = std::vector<Error>;
 
+// The same of a file that people write: a member that is there twice is a problem with its place,
+// and reads as its last value.
+Result<nlohmann::json> parseJson(std::string_view text, std::size_t maxBytes,
+                                 JsonProblems& problems);
+
 class JsonReader {
 public:
     JsonReader(const nlohmann::json& value, std::string place, JsonProblems& problems)
@@ -40,6 +44,9 @@ public:
     [[nodiscard]] JsonReader element(std::size_t index) const;
     [[nodiscard]] bool has(const char* key) const;
     [[nodiscard]] bool isText() const { return m_value && m_value->is_string(); }
+    [[nodiscard]] bool isNull() const { return m_value && m_value->is_null(); }
+    // Infinite where it is no number.
+    [[nodiscard]] double anyNumber() const;
     [[nodiscard]] bool isArrayOf(std::size_t count) const
     {
         return m_value && m_value->is_array() && m_value->size() == count;
@@ -63,7 +70,7 @@ public:
 
     // Records a problem for each member that is none of `known`, or if this is no object. For files
     // that people write: there an unknown member is a slip of the pen.
-    void refuseOthers(std::initializer_list<std::string_view> known) const;
+    void refuseOthers(const std::vector<std::string_view>& known) const;
 
     // For files that people write: a problem unless the member "version" is `version`.
     void checkVersion(std::uint64_t version) const;

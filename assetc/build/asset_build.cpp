@@ -1,7 +1,5 @@
 #include "assetc/build/asset_build.h"
 
-#include "assetc/build/depfile.h"
-#include "assetc/overwrite.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -78,10 +76,14 @@ void describeUnchanged(const ManifestAsset& asset, const BuildRecord& record,
     outcome.files = watchedFiles(asset.source, record.files);
 }
 
-Result<CompiledBytes> compileKind(const ManifestAsset& asset, std::vector<AskedFile>& asked)
+Result<CompiledBytes> compileKind(const ManifestAsset& asset, SourceFiles& files)
 {
     try {
-        return asset.kind->compile(asset.source, asset.options, asked);
+        auto compiled = asset.kind->compile(asset.source, asset.options, files);
+        if (!compiled)
+            if (const std::string wrong = wrongKind(*asset.kind, asset.source); !wrong.empty())
+                return Error{fmt::format("{}: {}", asset.source.string(), wrong)};
+        return compiled;
     } catch (const std::bad_alloc&) {
         return Error{asset.source.string() + ": out of memory; the input is too large for this "
                                              "machine, or for so many at once (--jobs)"};
@@ -190,16 +192,15 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
 {
     const std::int64_t start = fileClock();
     const auto begin = std::chrono::steady_clock::now();
-    std::vector<AskedFile> asked;
-    auto compiled = compileKind(asset, asked);
-    if (compiled)
-        if (const auto kept = refuseOverwrite(asset.source, asked, outputs(asset, *compiled));
-            !kept)
-            compiled = kept.error();
+    if (auto writable = checkWritable(outputPath(asset)); !writable)
+        return writable;
+    SourceFiles files;
+    files.outputs = {outputPath(asset)};
+    auto compiled = compileKind(asset, files);
     outcome.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     BuildRecord record;
-    record.files = fingerprintFiles(asset.source, std::move(asked), start);
+    record.files = fingerprintFiles(asset.source, std::move(files.asked), start);
     outcome.files = watchedFiles(asset.source, record.files);
     if (!compiled)
         return compiled.error();
@@ -240,15 +241,6 @@ Result<void> AssetBuild::compile(const ManifestAsset& asset, AssetOutcome& outco
     outcome.warnings = std::move(compiled->warnings);
     outcome.report = std::move(compiled->report);
     return {};
-}
-
-std::vector<fs::path> AssetBuild::outputs(const ManifestAsset& asset,
-                                          const CompiledBytes& compiled) const
-{
-    std::vector<fs::path> paths = {outputPath(asset)};
-    for (const CompiledPart& part : compiled.parts)
-        paths.push_back(m_folder / asset.partName(part.name));
-    return paths;
 }
 
 Result<void> AssetBuild::put(const ManifestAsset& asset, const fs::path& path,

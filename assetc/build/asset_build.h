@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assetc/build/build.h"
+#include "assetc/build/depfile.h"
 #include "assetc/build/folder_lock.h"
 #include "assetc/build/record.h"
 
@@ -36,8 +37,6 @@ private:
     // With the asset's lock held.
     Result<void> mend(const ManifestAsset& asset, const Freshness& freshness);
     Result<void> compile(const ManifestAsset& asset, AssetOutcome& outcome);
-    [[nodiscard]] std::vector<std::filesystem::path> outputs(const ManifestAsset& asset,
-                                                             const CompiledBytes& compiled) const;
     // With the asset's lock and m_writing held.
     Result<void> put(const ManifestAsset& asset, const std::filesystem::path& path,
                      std::span<const std::byte> bytes) const;
@@ -47,7 +46,7 @@ private:
                                               const std::vector<RecordedFile>& files) const;
     [[nodiscard]] std::filesystem::path depfilePath(const ManifestAsset& asset) const
     {
-        return outputPath(asset) += ".d";
+        return outputPath(asset) += kDepfileEnding;
     }
 
     const Manifest& m_manifest;

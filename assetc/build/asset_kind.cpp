@@ -3,40 +3,38 @@
 #include "assetc/compile_scene.h"
 #include "assetc/environment.h"
 #include "assetc/light.h"
+#include "assetc/option_rules.h"
 #include "assetc/report.h"
+#include "runtime/file.h"
 
 namespace penumbra {
 
 namespace {
 
-std::uint32_t wholeNumber(const JsonReader& value, std::uint32_t min, std::uint32_t max)
+// Over the value that the command has by default, where the member is there and not null.
+template <class Number>
+void readNumber(const JsonReader& options, const OptionRule& rule, Number& number)
 {
-    return static_cast<std::uint32_t>(value.asCount(max, min));
+    if (!options.has(rule.member) || options.member(rule.member).isNull())
+        return;
+    const JsonReader member = options.member(rule.member);
+    const double value = member.anyNumber();
+    if (const std::string wrong = whyNot(rule, value); !wrong.empty())
+        member.refuse(fmt::format("is {}, {}", member.quoted(), wrong));
+    else
+        number = static_cast<Number>(value);
 }
 
 // The members that meshes and lights share.
 void readFieldOptions(const JsonReader& options, std::uint32_t& shells, std::uint32_t& maxSide,
                       std::uint32_t& directions, float& threshold)
 {
-    if (options.has("shells"))
-        shells = wholeNumber(options.member("shells"), 2, kMaxFieldShells);
-    if (options.has("maxSide")) {
-        const JsonReader side = options.member("maxSide");
-        maxSide = wholeNumber(side, 3, kMaxFieldSide);
-        if (maxSide > 0 && ((maxSide - 1) & (maxSide - 2)) != 0)
-            side.refuse(fmt::format("is {}, not 2^k + 1", maxSide));
-    }
-    if (options.has("directions")) {
-        const JsonReader count = options.member("directions");
-        directions = wholeNumber(count, 2, 65536);
-        if (directions % 2 != 0)
-            count.refuse(fmt::format("is {}, not even", directions));
-    }
-    if (options.has("threshold"))
-        threshold = options.number("threshold", 0, 1);
+    readNumber(options, kShellsRule, shells);
+    readNumber(options, kMaxSideRule, maxSide);
+    readNumber(options, kDirectionsRule, directions);
+    readNumber(options, kThresholdRule, threshold);
 }
 
-// The members that are there, over the values that `assetc bake` has by default.
 CompileOptions readMeshOptions(const JsonReader& options)
 {
     CompileOptions result;
@@ -44,12 +42,13 @@ CompileOptions readMeshOptions(const JsonReader& options)
     options.refuseOthers(
         {"shells", "maxSide", "directions", "threshold", "targetError", "field", "lods"});
     readFieldOptions(options, bake.shells, bake.side, bake.directions, result.adaptThreshold);
-    if (options.has("targetError"))
-        result.targetError = options.number("targetError", 1e-4f, 1);
-    if (options.has("lods"))
-        result.lods = wholeNumber(options.member("lods"), 0, kMaxMeshLods);
-    if (options.has("field"))
-        bake.field = options.member("field").asFlag();
+    float targetError = 0;
+    readNumber(options, kTargetErrorRule, targetError);
+    if (targetError > 0)
+        result.targetError = targetError;
+    readNumber(options, kLodsRule, result.lods);
+    if (options.has(kFieldRule.member) && !options.member(kFieldRule.member).isNull())
+        bake.field = options.member(kFieldRule.member).asFlag();
     return result;
 }
 
@@ -59,12 +58,12 @@ void checkMeshOptions(const JsonReader& options)
 }
 
 Result<CompiledBytes> compileMesh(const std::filesystem::path& source,
-                                  const nlohmann::json& options, std::vector<AskedFile>& asked)
+                                  const nlohmann::json& options, SourceFiles& files)
 {
     JsonProblems none;
     const CompileOptions parsed = readMeshOptions(JsonReader(options, "options", none));
     Progress progress(source.stem().string(), Progress::Show::Never);
-    auto asset = compileAsset(source, parsed, progress, &asked);
+    auto asset = compileAsset(source, parsed, progress, &files);
     if (!asset)
         return asset.error();
     std::string report = compileReport(source, *asset);
@@ -74,13 +73,12 @@ Result<CompiledBytes> compileMesh(const std::filesystem::path& source,
 
 // What `assetc bake --per-node` writes.
 Result<CompiledBytes> compileSceneBytes(const std::filesystem::path& source,
-                                        const nlohmann::json& options,
-                                        std::vector<AskedFile>& asked)
+                                        const nlohmann::json& options, SourceFiles& files)
 {
     JsonProblems none;
     const CompileOptions parsed = readMeshOptions(JsonReader(options, "options", none));
     Progress progress(source.stem().string(), Progress::Show::Never);
-    auto scene = compileScene(source, parsed, progress, &asked);
+    auto scene = compileScene(source, parsed, progress, &files);
     if (!scene)
         return scene.error();
     CompiledBytes result;
@@ -102,7 +100,7 @@ void checkEnvironmentOptions(const JsonReader& options)
 }
 
 Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, const nlohmann::json&,
-                                         std::vector<AskedFile>&)
+                                         SourceFiles&)
 {
     const auto environment = importEnvironment(source);
     if (!environment)
@@ -110,10 +108,10 @@ Result<CompiledBytes> compileEnvironment(const std::filesystem::path& source, co
     auto bytes = encodeEnvironment(*environment);
     if (!bytes)
         return fail(bytes.error(), source.string());
-    CompiledBytes result{std::move(*bytes), {}, {}, environmentReport(*environment)};
-    if (std::string mended = mendedText(environment->statistics); !mended.empty())
-        result.warnings.push_back(std::move(mended));
-    return result;
+    return CompiledBytes{std::move(*bytes),
+                         {},
+                         environmentWarnings(environment->statistics),
+                         environmentReport(*environment)};
 }
 
 LightOptions readLightOptions(const JsonReader& options)
@@ -130,13 +128,12 @@ void checkLightOptions(const JsonReader& options)
 }
 
 Result<CompiledBytes> compileLightBytes(const std::filesystem::path& source,
-                                        const nlohmann::json& options,
-                                        std::vector<AskedFile>& asked)
+                                        const nlohmann::json& options, SourceFiles& files)
 {
     JsonProblems none;
     const LightOptions parsed = readLightOptions(JsonReader(options, "options", none));
     Progress progress(source.stem().string(), Progress::Show::Never);
-    auto light = compileLight(source, parsed, progress, &asked);
+    auto light = compileLight(source, parsed, progress, &files);
     if (!light)
         return light.error();
     std::string report = lightReport(source, *light);
@@ -151,10 +148,11 @@ constexpr const char* kEnvironmentEndings[] = {".hdr", ".exr"};
 constexpr const char* kLightEndings[] = {".json"};
 
 constexpr AssetKind kKinds[] = {
-    {"mesh", ".glb", kMeshEndings, checkMeshOptions, compileMesh},
-    {"scene", "/scene.json", {}, checkMeshOptions, compileSceneBytes}, // never guessed
-    {"environment", ".env", kEnvironmentEndings, checkEnvironmentOptions, compileEnvironment},
-    {"light", ".glb", kLightEndings, checkLightOptions, compileLightBytes},
+    {"mesh", ".glb", kMeshEndings, FileType::MeshSource, checkMeshOptions, compileMesh},
+    {"scene", "/scene.json", {}, FileType::MeshSource, checkMeshOptions, compileSceneBytes},
+    {"environment", ".env", kEnvironmentEndings, FileType::EnvironmentSource,
+     checkEnvironmentOptions, compileEnvironment},
+    {"light", ".glb", kLightEndings, FileType::LightSpec, checkLightOptions, compileLightBytes},
 };
 
 } // namespace
@@ -162,6 +160,20 @@ constexpr AssetKind kKinds[] = {
 std::span<const AssetKind> assetKinds()
 {
     return kKinds;
+}
+
+std::string wrongKind(const AssetKind& kind, const std::filesystem::path& source)
+{
+    constexpr std::uint64_t kMostBytes = 1u << 20; // JSON is told by all of it
+    const auto head = readFileHead(source, kMostBytes);
+    if (!head)
+        return {};
+    const RecognisedFile file = head->fileBytes <= kMostBytes ? recogniseFile(head->bytes, source)
+                                                              : recogniseHead(head->bytes, source);
+    for (const AssetKind& other : kKinds)
+        if (file.type != kind.source && other.source == file.type)
+            return fmt::format("is {}; give the asset \"kind\": \"{}\"", file.what, other.name);
+    return {};
 }
 
 } // namespace penumbra

@@ -18,35 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An asset whose output is some asset's source fails, before anything is written.
-void refuseOverwrites(const Manifest& manifest, const AssetBuild& build,
-                      std::vector<AssetOutcome>& outcomes)
-{
-    std::error_code ignored;
-    std::map<fs::path, std::string> places;
-    for (const ManifestAsset& asset : manifest.assets)
-        places.emplace(fs::weakly_canonical(asset.source, ignored), asset.place);
-    for (std::size_t i = 0; i < manifest.assets.size(); ++i) {
-        const fs::path output = build.outputPath(manifest.assets[i]);
-        const fs::path place = fs::weakly_canonical(output, ignored);
-        auto found = places.find(place);
-        if (found == places.end() && manifest.assets[i].kind->hasFolder()) {
-            // Any file of the folder may become a part. Paths sort by folder.
-            const fs::path folder = place.parent_path();
-            found = places.upper_bound(folder);
-            if (found != places.end() && std::mismatch(folder.begin(), folder.end(),
-                                                       found->first.begin(), found->first.end())
-                                                 .first != folder.end())
-                found = places.end();
-        }
-        if (found != places.end())
-            outcomes[i].message =
-                fmt::format("{}: the output would replace the source of {}; rename the asset or "
-                            "build into another folder",
-                            output.string(), found->second);
-    }
-}
-
 // Assets in order, each thread takes the next; the loops inside one are what other threads help
 // with at the end. Isolated, since a thread that waits in such a loop must not begin another asset:
 // it would hold two locks (see FolderLock) and the memory of two.
@@ -128,6 +99,38 @@ std::vector<std::string> staleOutputs(const Manifest& manifest,
 
 } // namespace
 
+JsonProblems checkOutputs(const Manifest& manifest, const fs::path& folder, const fs::path& report)
+{
+    std::error_code ignored;
+    std::map<fs::path, std::string> inputs; // what each is
+    for (const ManifestAsset& asset : manifest.assets)
+        inputs.emplace(fs::weakly_canonical(asset.source, ignored), "the source of " + asset.place);
+    inputs.emplace(fs::weakly_canonical(manifest.file, ignored), "the manifest");
+    if (!report.empty())
+        inputs.emplace(fs::weakly_canonical(report, ignored), "the report");
+    JsonProblems problems;
+    for (const ManifestAsset& asset : manifest.assets) {
+        const fs::path output = folder / asset.outputName();
+        const fs::path place = fs::weakly_canonical(output, ignored);
+        auto found = inputs.find(place);
+        if (found == inputs.end() && asset.kind->hasFolder()) {
+            // Any file of the folder may become a part. Paths sort by folder.
+            const fs::path parts = place.parent_path();
+            found = inputs.upper_bound(parts);
+            if (found != inputs.end() &&
+                std::mismatch(parts.begin(), parts.end(), found->first.begin(), found->first.end())
+                        .first != parts.end())
+                found = inputs.end();
+        }
+        if (found != inputs.end())
+            problems.push_back(
+                {fmt::format("{}: {}.name: the output {} would replace {}; choose another name or "
+                             "folder",
+                             manifest.file.string(), asset.place, output.string(), found->second)});
+    }
+    return problems;
+}
+
 Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folder,
                                  BuildObserver& observer, std::mutex& writing)
 {
@@ -151,11 +154,9 @@ Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folde
     const std::size_t count = manifest.assets.size();
     outcome.assets.resize(count);
     AssetBuild build(manifest, folder, compiler, *lock, writing);
-    refuseOverwrites(manifest, build, outcome.assets);
     std::vector<char> done(count, 0); // not bool: threads write neighbours
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        done[i] = !outcome.assets[i].message.empty() ||
-                  build.isUnchanged(manifest.assets[i], outcome.assets[i]);
+        done[i] = build.isUnchanged(manifest.assets[i], outcome.assets[i]);
     });
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < count; ++i)

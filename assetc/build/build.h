@@ -56,6 +56,11 @@ public:
     virtual void finish(const ManifestAsset&, const AssetOutcome&) {}
 };
 
+// Outputs that would replace a source, the manifest or the report (none where empty), each with its
+// place in the manifest. Before anything is compiled.
+JsonProblems checkOutputs(const Manifest& manifest, const std::filesystem::path& folder,
+                          const std::filesystem::path& report);
+
 // `writing` is held while files are written, so that whoever holds it may end the process and leave
 // nothing half-done. Compiles at most as many assets at once as TBB may use threads. An asset that
 // fails does not stop the others. Error: the folder cannot be used.

@@ -48,11 +48,12 @@ Result<FolderLock> FolderLock::open(const std::filesystem::path& file)
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
     if (error)
-        return Error{fmt::format("{}: cannot create the folder: {}", file.parent_path().string(),
-                                 error.message())};
+        return Error{fmt::format("{}: cannot create the folder: {}; choose another one",
+                                 file.parent_path().string(), error.message())};
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (descriptor < 0)
-        return Error{fmt::format("{}: cannot open: {}", file.string(), std::strerror(errno))};
+        return Error{fmt::format("{}: cannot open: {}; choose another folder", file.string(),
+                                 std::strerror(errno))};
     return FolderLock(descriptor);
 }
 

@@ -9,20 +9,21 @@ namespace penumbra {
 
 int runBake(const BakeArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".glb") ||
-        !checkReport(arguments.report, {arguments.input, arguments.output}))
-        return kExitUsage;
-    std::vector<AskedFile> asked;
+    if (const int code = checkOutput(arguments.input, arguments.output, ".glb"); code != kExitDone)
+        return code;
+    if (const int code = prepareReport(arguments.report, {arguments.input, arguments.output});
+        code != kExitDone)
+        return code;
+    SourceFiles files;
+    files.outputs = {arguments.output, arguments.report};
     const auto asset = [&] {
         Progress progress(arguments.input.stem().string());
-        return compileAsset(arguments.input, arguments.options, progress, &asked);
+        return compileAsset(arguments.input, arguments.options, progress, &files);
     }();
     if (!asset) {
-        spdlog::error("{}", asset.error().message);
-        return kExitInput;
+        logError(asset.error());
+        return files.overwrites ? kExitUsage : kExitInput;
     }
-    if (!checkOverwrite(arguments.input, asked, {arguments.output, arguments.report}))
-        return kExitUsage;
     for (const std::string& warning : asset->report.warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
     if (!writeOutput(arguments.output, asset->bytes) ||

@@ -1,6 +1,7 @@
 #include "assetc/commands/commands.h"
 #include "assetc/commands/output.h"
 #include "assetc/compile_scene.h"
+#include "assetc/file_type.h"
 #include "assetc/report.h"
 #include "assetc/words.h"
 
@@ -11,29 +12,29 @@ namespace penumbra {
 int runBakeScene(const BakeArguments& arguments)
 {
     std::error_code error;
-    if (arguments.output.extension() == ".glb" ||
+    if (endingOf(arguments.output) == ".glb" ||
         (std::filesystem::exists(arguments.output, error) &&
          !std::filesystem::is_directory(arguments.output, error))) {
-        spdlog::error("{}: the output of --per-node is a folder", arguments.output.string());
+        spdlog::error("{}: the output of --per-node is a folder; name one",
+                      arguments.output.string());
         return kExitUsage;
     }
     const std::filesystem::path sceneFile = arguments.output / kSceneFile;
-    if (!checkReport(arguments.report, {arguments.input, sceneFile}))
-        return kExitUsage;
-    std::vector<AskedFile> asked;
+    if (const int code = checkOutput(arguments.input, sceneFile, ".json"); code != kExitDone)
+        return code;
+    if (const int code = prepareReport(arguments.report, {arguments.input, sceneFile});
+        code != kExitDone)
+        return code;
+    SourceFiles files;
+    files.outputs = {sceneFile, arguments.report};
     const auto scene = [&] {
         Progress progress(arguments.input.stem().string());
-        return compileScene(arguments.input, arguments.options, progress, &asked);
+        return compileScene(arguments.input, arguments.options, progress, &files);
     }();
     if (!scene) {
-        spdlog::error("{}", scene.error().message);
-        return kExitInput;
+        logError(scene.error());
+        return files.overwrites ? kExitUsage : kExitInput;
     }
-    std::vector<std::filesystem::path> outputs = {sceneFile, arguments.report};
-    for (const SceneAsset& part : scene->assets)
-        outputs.push_back(arguments.output / part.file);
-    if (!checkOverwrite(arguments.input, asked, outputs))
-        return kExitUsage;
     for (const std::string& warning : scene->warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
     std::size_t bytes = 0;

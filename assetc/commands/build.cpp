@@ -4,6 +4,7 @@
 #include "assetc/build/build_report.h"
 #include "assetc/commands/commands.h"
 #include "assetc/commands/output.h"
+#include "assetc/words.h"
 
 #include <csignal>
 #include <spdlog/spdlog.h>
@@ -40,17 +41,19 @@ void exitOnSignal(std::mutex& writing, bool watch)
     }).detach();
 }
 
-void logProblems(const JsonProblems& problems)
+void logProblems(const std::filesystem::path& manifest, const JsonProblems& problems)
 {
     constexpr std::size_t kMostShown = 20;
     for (std::size_t i = 0; i < std::min(problems.size(), kMostShown); ++i)
         spdlog::error("{}", problems[i].message);
     if (problems.size() > kMostShown)
-        spdlog::error("and {} more", problems.size() - kMostShown);
+        spdlog::error("{}: and {} more; assetc validate lists all that the manifest alone shows",
+                      manifest.string(), problems.size() - kMostShown);
 }
 
 struct Round {
     int exitCode = kExitDone;
+    bool isLast = false;            // no change of a file would help
     std::vector<WatchedFile> files; // that the result depends on
 };
 
@@ -60,7 +63,8 @@ void say(const Manifest& manifest, const BuildArguments& arguments, const BuildO
         const ManifestAsset& asset = manifest.assets[i];
         const AssetOutcome& result = outcome.assets[i];
         if (result.status == BuildStatus::Failed)
-            spdlog::error("{} \"{}\": {}", asset.place, asset.name, result.message);
+            for (const std::string_view line : linesOf(result.message))
+                spdlog::error("{} \"{}\": {}", asset.place, asset.name, line);
         else if (result.status == BuildStatus::Built)
             for (const std::string& warning : result.warnings)
                 spdlog::warn("{} \"{}\": {}", asset.place, asset.name, warning);
@@ -81,10 +85,17 @@ Round buildOnce(const BuildArguments& arguments, std::mutex& writing)
 {
     Round round;
     round.files = {{arguments.manifest, stampFile(arguments.manifest)}};
+    round.exitCode = prepareReport(arguments.report, {arguments.manifest});
+    if (round.exitCode != kExitDone) {
+        round.isLast = true;
+        return round;
+    }
     JsonProblems problems;
     const std::optional<Manifest> manifest = readManifest(arguments.manifest, problems);
-    if (!manifest) {
-        logProblems(problems);
+    if (manifest)
+        problems = checkOutputs(*manifest, arguments.output, arguments.report);
+    if (!problems.empty()) {
+        logProblems(arguments.manifest, problems);
         round.exitCode = kExitInput;
         return round;
     }
@@ -94,8 +105,9 @@ Round buildOnce(const BuildArguments& arguments, std::mutex& writing)
     const auto outcome = buildAssets(*manifest, arguments.output, progress, writing);
     progress.clear();
     if (!outcome) {
-        spdlog::error("{}", outcome.error().message);
+        logError(outcome.error());
         round.exitCode = kExitInput;
+        round.isLast = true;
         return round;
     }
     say(*manifest, arguments, *outcome);
@@ -138,14 +150,12 @@ void waitForChange(const std::vector<WatchedFile>& files)
 
 int runBuild(const BuildArguments& arguments)
 {
-    if (!checkReport(arguments.report, {arguments.manifest}))
-        return kExitUsage;
     static std::mutex writing; // static: the thread that waits for signals outlives this function
     exitOnSignal(writing, arguments.watch);
     Round round = buildOnce(arguments, writing);
     if (stampFile(arguments.manifest) == kNoFile) // a wrong name, not a file in the making
         return round.exitCode;
-    while (arguments.watch) {
+    while (arguments.watch && !round.isLast) {
         waitForChange(round.files);
         round = buildOnce(arguments, writing);
     }

@@ -9,12 +9,14 @@ namespace penumbra {
 
 int runEnvironment(const EnvironmentArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".env") ||
-        !checkReport(arguments.report, {arguments.input, arguments.output}))
-        return kExitUsage;
+    if (const int code = checkOutput(arguments.input, arguments.output, ".env"); code != kExitDone)
+        return code;
+    if (const int code = prepareReport(arguments.report, {arguments.input, arguments.output});
+        code != kExitDone)
+        return code;
     const auto environment = importEnvironment(arguments.input);
     if (!environment) {
-        spdlog::error("{}", environment.error().message);
+        logError(environment.error());
         return kExitInput;
     }
     const auto bytes = encodeEnvironment(*environment);
@@ -23,8 +25,8 @@ int runEnvironment(const EnvironmentArguments& arguments)
         return kExitInput;
     }
     const EnvironmentStatistics& statistics = environment->statistics;
-    if (const std::string mended = mendedText(statistics); !mended.empty())
-        spdlog::warn("{}: {}", arguments.input.string(), mended);
+    for (const std::string& warning : environmentWarnings(statistics))
+        spdlog::warn("{}: {}", arguments.input.string(), warning);
     if (!writeOutput(arguments.output, *bytes) ||
         !writeReport(arguments.report, environmentReport(*environment)))
         return kExitInput;

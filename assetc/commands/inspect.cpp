@@ -27,6 +27,13 @@ const char* pictureRemedy(FileType type)
     }
 }
 
+std::string andMoreText(std::size_t more, const std::filesystem::path& file)
+{
+    return more == 0
+               ? std::string()
+               : fmt::format("; and {} more: assetc validate {} lists them", more, file.string());
+}
+
 std::string validationReport(const std::filesystem::path& file, const Inspection& inspection)
 {
     nlohmann::ordered_json report = {
@@ -42,12 +49,15 @@ std::string validationReport(const std::filesystem::path& file, const Inspection
 int runInspect(const InspectArguments& arguments)
 {
     const std::filesystem::path &file = arguments.input, &sheet = arguments.sheet;
-    if ((!sheet.empty() && !checkOutput(file, sheet, ".png")) ||
-        !checkReport(arguments.report, {file}))
-        return kExitUsage;
+    if (!sheet.empty())
+        if (const int code = checkOutput(file, sheet, ".png"); code != kExitDone)
+            return code;
+    if (const int code = prepareReport(arguments.report, {file}); code != kExitDone)
+        return code;
     const Inspection inspection = inspectFile(file, !sheet.empty());
     if (!inspection.problems.empty()) {
-        spdlog::error("{}: {}", file.string(), inspection.problems.front().message);
+        spdlog::error("{}: {}{}", file.string(), inspection.problems.front().message,
+                      andMoreText(inspection.problems.size() - 1, file));
         return kExitInput;
     }
     if (!sheet.empty()) {
@@ -70,8 +80,8 @@ int runInspect(const InspectArguments& arguments)
 int runValidate(const InspectArguments& arguments)
 {
     const std::filesystem::path& file = arguments.input;
-    if (!checkReport(arguments.report, {file}))
-        return kExitUsage;
+    if (const int code = prepareReport(arguments.report, {file}); code != kExitDone)
+        return code;
     const Inspection inspection = inspectFile(file, false);
     const bool valid = inspection.problems.empty();
     const std::string report = validationReport(file, inspection);

@@ -10,20 +10,21 @@ namespace penumbra {
 
 int runLight(const LightArguments& arguments)
 {
-    if (!checkOutput(arguments.input, arguments.output, ".glb") ||
-        !checkReport(arguments.report, {arguments.input, arguments.output}))
-        return kExitUsage;
-    std::vector<AskedFile> asked;
+    if (const int code = checkOutput(arguments.input, arguments.output, ".glb"); code != kExitDone)
+        return code;
+    if (const int code = prepareReport(arguments.report, {arguments.input, arguments.output});
+        code != kExitDone)
+        return code;
+    SourceFiles files;
+    files.outputs = {arguments.output, arguments.report};
     const auto light = [&] {
         Progress progress(arguments.input.stem().string());
-        return compileLight(arguments.input, arguments.options, progress, &asked);
+        return compileLight(arguments.input, arguments.options, progress, &files);
     }();
     if (!light) {
-        spdlog::error("{}", light.error().message);
-        return kExitInput;
+        logError(light.error());
+        return files.overwrites ? kExitUsage : kExitInput;
     }
-    if (!checkOverwrite(arguments.input, asked, {arguments.output, arguments.report}))
-        return kExitUsage;
     for (const std::string& warning : light->asset.report.warnings)
         spdlog::warn("{}: {}", arguments.input.string(), warning);
     const std::span<const std::byte> bytes(light->asset.bytes);

@@ -1,64 +1,96 @@
 #include "assetc/commands/output.h"
 
-#include "assetc/overwrite.h"
+#include "assetc/commands/commands.h"
+#include "assetc/file_type.h"
+#include "assetc/source_files.h"
+#include "assetc/words.h"
 #include "runtime/file.h"
 
 #include <spdlog/spdlog.h>
 
 namespace penumbra {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 bool say(const Result<void>& done)
 {
     if (!done)
-        spdlog::error("{}", done.error().message);
+        logError(done.error());
     return done.ok();
+}
+
+// Empty where `report` holds nothing or a report of ours. What it is else.
+std::string whatIsLost(const fs::path& report)
+{
+    constexpr std::uint64_t kMaxReportBytes = 1u << 30;
+    const auto bytes = readFile(report, kMaxReportBytes);
+    if (!bytes)
+        return "is there";
+    if (bytes->empty())
+        return {};
+    const RecognisedFile file = recogniseFile(*bytes, report);
+    return file.type == FileType::Report  ? std::string()
+           : file.type == FileType::Other ? "is no report of assetc"
+                                          : "is " + file.what;
 }
 
 } // namespace
 
-bool checkOutput(const std::filesystem::path& input, const std::filesystem::path& output,
-                 const char* extension)
+int checkOutput(const fs::path& input, const fs::path& output, const char* extension)
 {
-    if (output.extension() != extension) {
+    if (endingOf(output) != extension) {
         spdlog::error("{}: the output must end in {}", output.string(), extension);
-        return false;
+        return kExitUsage;
     }
-    return say(refuseOverwrite(input, {}, {output}));
+    SourceFiles files;
+    files.outputs = {output};
+    if (!say(files.refuseOverwrite(input)))
+        return kExitUsage;
+    return say(checkWritable(output)) ? kExitDone : kExitInput;
 }
 
-bool checkReport(const std::filesystem::path& report,
-                 const std::vector<std::filesystem::path>& others)
+int prepareReport(const fs::path& report, const std::vector<fs::path>& others)
 {
     if (report.empty())
-        return true;
-    if (report.extension() != ".json") {
+        return kExitDone;
+    if (endingOf(report) != ".json") {
         spdlog::error("{}: the report must end in .json", report.string());
-        return false;
+        return kExitUsage;
     }
     std::error_code error;
-    for (const std::filesystem::path& other : others)
-        if (std::filesystem::weakly_canonical(report, error) ==
-            std::filesystem::weakly_canonical(other, error)) {
+    for (const fs::path& other : others)
+        if (fs::weakly_canonical(report, error) == fs::weakly_canonical(other, error)) {
             spdlog::error("{}: the report would replace it; choose another name", other.string());
-            return false;
+            return kExitUsage;
         }
-    return true;
+    if (!say(checkWritable(report)))
+        return kExitInput;
+    if (!fs::exists(report, error))
+        return kExitDone;
+    if (const std::string lost = whatIsLost(report); !lost.empty()) {
+        spdlog::error("{}: {}, and the report would replace it; choose another name",
+                      report.string(), lost);
+        return kExitUsage;
+    }
+    if (fs::file_size(report, error) > 0) // an empty one may be held for us
+        fs::remove(report, error);
+    return kExitDone;
 }
 
-bool checkOverwrite(const std::filesystem::path& input, const std::vector<AskedFile>& asked,
-                    const std::vector<std::filesystem::path>& outputs)
+void logError(const Error& error)
 {
-    return say(refuseOverwrite(input, asked, outputs));
+    for (const std::string_view line : linesOf(error.message))
+        spdlog::error("{}", line);
 }
 
-bool writeOutput(const std::filesystem::path& file, std::span<const std::byte> bytes)
+bool writeOutput(const fs::path& file, std::span<const std::byte> bytes)
 {
     return say(writeFile(file, bytes));
 }
 
-bool writeReport(const std::filesystem::path& file, const std::string& text)
+bool writeReport(const fs::path& file, const std::string& text)
 {
     return file.empty() || say(writeFile(file, text));
 }

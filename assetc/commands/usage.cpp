@@ -27,7 +27,8 @@ std::size_t editDistance(std::string_view a, std::string_view b)
 // The nearest of `known` that is a slip away, or none.
 std::string nearestTo(std::string_view word, const std::vector<std::string>& known)
 {
-    std::size_t edits = 3; // as many make another word
+    constexpr std::size_t kShort = 7; // "--jobs" and "--lods" are two letters apart, and two words
+    std::size_t edits = word.size() < kShort && word.starts_with("--") ? 2 : 3;
     std::string nearest;
     for (const std::string& name : known)
         if (const std::size_t distance = editDistance(word, name); distance < edits) {
@@ -38,7 +39,7 @@ std::string nearestTo(std::string_view word, const std::vector<std::string>& kno
 }
 
 // CLI11 lists what it did not expect backwards, values of unknown options among it.
-std::string extrasText(const CLI::App& command)
+std::string extrasText(const CLI::App& app, const CLI::App& command)
 {
     std::vector<std::string> known;
     for (const CLI::Option* option : command.get_options())
@@ -51,9 +52,23 @@ std::string extrasText(const CLI::App& command)
     if (option == extras.end())
         return fmt::format("\"{}\" is one argument too many", extras.front());
     const std::string name = option->substr(0, option->find('='));
+    for (const CLI::App* other : app.get_subcommands([](const CLI::App*) { return true; }))
+        if (other != &command && other->get_option_no_throw(name) != nullptr)
+            return fmt::format("no option {}; that is one of assetc {}", name, other->get_name());
     const std::string nearest = nearestTo(name, known);
     return fmt::format("no option {}", name) +
            (nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+}
+
+// The library says "--jobs: At Most 1 required but received 2".
+std::string mismatchText(const CLI::App& command, const CLI::ParseError& error)
+{
+    const std::string text = error.what();
+    const std::string name = text.substr(0, text.find(':'));
+    const CLI::Option* option = command.get_option_no_throw(name.substr(0, name.find(',')));
+    return option != nullptr && option->count() > 1
+               ? fmt::format("{} is given {} times; give it once", name, option->count())
+               : fmt::format("{} takes a value; give one", name);
 }
 
 } // namespace
@@ -76,9 +91,10 @@ int refuseUsage(const CLI::App& app, const CLI::ParseError& error)
     const std::vector<CLI::App*> commands = app.get_subcommands();
     const CLI::App& command = commands.empty() ? app : *commands.front();
     const std::string name = commands.empty() ? "" : command.get_name();
-    const std::string what = command.remaining_size() > 0 ? extrasText(command)
-                             : commands.empty()           ? "no command"
-                                                          : std::string(error.what());
+    const std::string what = command.remaining_size() > 0             ? extrasText(app, command)
+                             : commands.empty()                       ? "no command"
+                             : error.get_name() == "ArgumentMismatch" ? mismatchText(command, error)
+                                                                      : std::string(error.what());
     spdlog::error("{}{}{}; see assetc {}{}--help", name, name.empty() ? "" : ": ", what, name,
                   name.empty() ? "" : " ");
     return kExitUsage;

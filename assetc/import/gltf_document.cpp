@@ -122,9 +122,40 @@ Result<void> checkNumbers(const json& value, const std::string& place)
     return {};
 }
 
+// `bytes` is what the buffer says that it has.
+void checkUri(const JsonReader& reader, const std::string& uri, std::uint64_t bytes,
+              const std::filesystem::path& folder, std::vector<AskedFile>* asked)
+{
+    std::uint64_t found = 0;
+    std::string name = "the data";
+    if (uri.starts_with("data:")) {
+        constexpr std::string_view kBase64 = ";base64,";
+        const std::size_t begin = uri.find(kBase64);
+        if (begin == std::string::npos) {
+            reader.refuse("is data that is not in base64; export it again");
+            return;
+        }
+        const std::size_t last = uri.find_last_not_of('=');
+        found = last < begin + kBase64.size() ? 0 : (last + 1 - begin - kBase64.size()) * 3 / 4;
+    } else {
+        const auto path = resolveInFolder(folder, decodeUri(uri), asked);
+        const auto head = path ? readFileHead(*path, 0) : path.error();
+        if (!head) {
+            reader.refuse("cannot be used: " + head.error().message);
+            return;
+        }
+        name = path->filename().string();
+        found = head->fileBytes;
+    }
+    if (found != bytes)
+        reader.refuse(fmt::format("is wrong: {} has {} bytes, and byteLength is {}; copy or export "
+                                  "it again",
+                                  name, found, bytes));
+}
+
 // Sizes and places of all buffers, before tinygltf allocates or opens any.
-Result<void> checkBuffers(const json& document, const std::filesystem::path& folder,
-                          std::vector<AskedFile>* asked)
+Result<void> checkBuffers(const json& document, const GlbView& view, bool binary,
+                          const std::filesystem::path& folder, std::vector<AskedFile>* asked)
 {
     const auto buffers = document.find("buffers");
     if (buffers == document.end())
@@ -132,20 +163,29 @@ Result<void> checkBuffers(const json& document, const std::filesystem::path& fol
     if (!buffers->is_array())
         return Error{"buffers is not an array; if this is glTF 1.0, convert it to 2.0"};
     std::uint64_t sum = 0;
+    std::vector<std::uint64_t> bytes; // [buffers->size()]
     JsonProblems problems;
-    for (std::size_t i = 0; i < buffers->size(); ++i) {
+    for (std::size_t i = 0; i < buffers->size() && problems.empty(); ++i) {
         const JsonReader buffer((*buffers)[i], fmt::format("buffers[{}]", i), problems);
-        sum += buffer.count("byteLength", kMaxSourceBytes);
-        const std::string uri = buffer.has("uri") ? buffer.text("uri") : "";
-        if (!uri.empty() && !uri.starts_with("data:"))
-            if (const auto path = resolveInFolder(folder, decodeUri(uri), asked); !path)
-                buffer.refuse(".uri: " + path.error().message);
-        if (!problems.empty())
-            return problems.front();
+        sum += bytes.emplace_back(buffer.count("byteLength", kMaxSourceBytes));
     }
     if (sum > kMaxSourceBytes)
         return Error{fmt::format("buffers of {} bytes in all, more than {}", sum, kMaxSourceBytes)};
-    return {};
+    for (std::size_t i = 0; i < buffers->size() && problems.empty(); ++i) {
+        const JsonReader buffer((*buffers)[i], fmt::format("buffers[{}]", i), problems);
+        const std::string uri = buffer.has("uri") ? buffer.text("uri") : "";
+        if (!problems.empty())
+            break;
+        if (!uri.empty())
+            checkUri(buffer.member("uri"), uri, bytes[i], folder, asked);
+        else if (!binary)
+            buffer.refuse("has no \"uri\", and a .gltf has no data of its own; export it again");
+        else if (view.bin.size() < bytes[i])
+            buffer.refuse(fmt::format("has {} bytes, and the file's binary chunk {}; copy or "
+                                      "export it again",
+                                      bytes[i], view.bin.size()));
+    }
+    return problems.empty() ? Result<void>() : Result<void>(problems.front());
 }
 
 // The part that tinygltf parses. Materials are empty there, so that primitives can name them.
@@ -199,7 +239,7 @@ Result<GltfDocument> loadGltf(std::span<const std::byte> bytes, const std::files
         return version.error();
     if (const auto extensions = checkExtensions(*document); !extensions)
         return extensions.error();
-    if (const auto buffers = checkBuffers(*document, source.folder, asked); !buffers)
+    if (const auto buffers = checkBuffers(*document, view, binary, source.folder, asked); !buffers)
         return buffers.error();
     if (document->contains("animations"))
         warnings.emplace_back("animations are not read: the rest pose is baked");

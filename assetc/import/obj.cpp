@@ -2,12 +2,14 @@
 
 #include "assetc/byte_order_mark.h"
 #include "assetc/import/image_library.h"
+#include "assetc/import/obj_lines.h"
 #include "assetc/import/vertex_key.h"
+#include "assetc/words.h"
 #include "runtime/file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+#include <set>
 #include <sstream>
 #include <tiny_obj_loader.h>
 #include <unordered_map>
@@ -44,6 +46,7 @@ public:
         const auto text = path ? readText(*path, kMaxMaterialBytes) : path.error();
         if (!text) {
             m_warnings.push_back("material library not read: " + text.error().message);
+            m_allRead = false;
             return false;
         }
         std::istringstream stream(*text);
@@ -51,77 +54,14 @@ public:
         return true;
     }
 
+    [[nodiscard]] bool allRead() const { return m_allRead; }
+
 private:
+    bool m_allRead = true;
     std::filesystem::path m_folder;
     std::vector<std::string>& m_warnings;
     std::vector<AskedFile>* m_asked; // may be null
 };
-
-// An index, or two or three with slashes: "3", "3/1", "3//2", "-1/-1/-1".
-bool isCorner(std::string_view word)
-{
-    for (std::size_t i = 0; i < word.size(); ++i) {
-        const bool first = i == 0 || word[i - 1] == '/';
-        const bool digit = word[i] >= '0' && word[i] <= '9';
-        if (!digit && !(word[i] == '-' && first) && !(word[i] == '/' && i > 0))
-            return false;
-    }
-    return true;
-}
-
-bool isFiniteNumber(std::string_view word)
-{
-    if (word.starts_with('+') && !word.starts_with("+-"))
-        word.remove_prefix(1);
-    double value = 0;
-    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc{} && last == word.data() + word.size() && std::isfinite(value);
-}
-
-// tinyobjloader reads "v 1 a 0" as (1, 0, 0) and skips a face without corners, so a damaged file
-// would compile to another mesh. Numbers of vertices and corners of faces are checked here first.
-Result<void> checkLines(std::string_view text)
-{
-    if (text.find('\0') != std::string_view::npos)
-        return Error{"a zero byte: not a text file"};
-    for (std::size_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-        std::string_view line = text.substr(0, end);
-        text.remove_prefix(end);
-        text.remove_prefix(text.starts_with("\r\n") ? 2 : std::min<std::size_t>(text.size(), 1));
-        const auto nextWord = [&] {
-            line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-            const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-            line.remove_prefix(word.size());
-            return word;
-        };
-        const std::string_view keyword = nextWord();
-        if (keyword != "v" && keyword != "f")
-            continue;
-        if (line.ends_with('\\'))
-            return Error{fmt::format("line {}: continues on the next, which is not supported; join "
-                                     "the two",
-                                     number)};
-        if (keyword == "v") {
-            for (int i = 1; i <= 3; ++i)
-                if (const std::string_view word = nextWord(); !isFiniteNumber(word))
-                    return Error{fmt::format("line {}: a vertex takes three finite numbers, number "
-                                             "{} is \"{}\"",
-                                             number, i, word.substr(0, 40))};
-            continue;
-        }
-        int corners = 0;
-        for (std::string_view word = nextWord(); !word.empty() && !word.starts_with('#');
-             word = nextWord(), ++corners)
-            if (!isCorner(word))
-                return Error{fmt::format("line {}: corner \"{}\" is not an index", number,
-                                         word.substr(0, 40))};
-        if (corners < 3)
-            return Error{fmt::format("line {}: a face with {} corners; the file may be cut off",
-                                     number, corners)};
-    }
-    return {};
-}
 
 struct ObjFile {
     tinyobj::attrib_t attributes;
@@ -136,11 +76,8 @@ Result<ObjFile> parse(const std::string& text, tinyobj::MaterialReader* material
     std::string warning;
     std::string error;
     if (!tinyobj::LoadObj(&file.attributes, &file.shapes, &file.materials, &warning, &error,
-                          &stream, materials, triangulate)) {
-        while (!error.empty() && (error.back() == '\n' || error.back() == ' '))
-            error.pop_back();
-        return Error{"not a readable OBJ file: " + error.substr(0, 400)};
-    }
+                          &stream, materials, triangulate))
+        return Error{"not a readable OBJ file; export it again"}; // the lines are known to be good
     return file;
 }
 
@@ -157,17 +94,15 @@ Result<void> checkIndices(const ObjFile& file, bool& allTriangles)
             allTriangles = allTriangles && count == 3;
         }
         if (corners != shape.mesh.indices.size()) // the loader counts corners in 8 bits
-            return Error{
-                fmt::format("group \"{}\": a face with more than 255 corners", shape.name)};
-        for (std::size_t i = 0; i < shape.mesh.indices.size(); ++i) {
-            const tinyobj::index_t& index = shape.mesh.indices[i];
-            if (index.vertex_index < 0 || index.vertex_index >= vertexCount)
-                return Error{fmt::format("group \"{}\": corner {} is vertex {} of {}", shape.name,
-                                         i, index.vertex_index + 1, vertexCount)};
-            if (index.normal_index < -1 || index.normal_index >= normalCount)
-                return Error{fmt::format("group \"{}\": corner {} has normal {} of {}", shape.name,
-                                         i, index.normal_index + 1, normalCount)};
-        }
+            return Error{fmt::format("group \"{}\": a face with more than 255 corners; split it",
+                                     shape.name)};
+        // readObjLines has said of each line that it is good; this is about what the loader made.
+        for (const tinyobj::index_t& index : shape.mesh.indices)
+            if (index.vertex_index < 0 || index.vertex_index >= vertexCount ||
+                index.normal_index < -1 || index.normal_index >= normalCount)
+                return Error{fmt::format(
+                    "group \"{}\": a corner without a vertex or normal; export it again",
+                    shape.name)};
     }
     return {};
 }
@@ -261,14 +196,57 @@ void addMaterials(const ObjFile& file, const std::filesystem::path& folder,
     out.mesh.material = out.mesh.materials[largestMaterial(out.mesh)];
 }
 
+// What a file without a face has.
+std::string foundText(const ObjLines& lines)
+{
+    std::string text;
+    for (const auto& [number, one, many] : {std::tuple{lines.vertices, "vertex", "vertices"},
+                                            {lines.lines, "line", "lines"},
+                                            {lines.points, "list of points", "lists of points"},
+                                            {lines.surfaces, "curved surface", "curved surfaces"}})
+        if (number > 0)
+            text += fmt::format("{}{}", text.empty() ? "" : ", ", counted(number, one, many));
+    return text.empty() ? "nor anything else of a mesh" : "only " + text;
+}
+
+// One warning, of the first.
+void warnOfUnknown(const std::map<std::string, std::size_t>& lineOf,
+                   const std::vector<tinyobj::material_t>& known,
+                   std::vector<std::string>& warnings)
+{
+    std::set<std::string> names;
+    for (const tinyobj::material_t& material : known)
+        names.insert(material.name);
+    std::size_t unknown = 0, firstLine = 0;
+    std::string first;
+    for (const auto& [name, line] : lineOf)
+        if (!names.contains(name) && (unknown++ == 0 || line < firstLine)) {
+            firstLine = line;
+            first = name.substr(0, 40);
+        }
+    if (unknown > 0)
+        warnings.push_back(fmt::format(
+            "line {}: no material library has \"{}\"{}; its faces get "
+            "the default material",
+            firstLine, first, unknown > 1 ? fmt::format(", nor {} more", unknown - 1) : ""));
+}
+
 } // namespace
 
 Result<ImportedMesh> importObjText(const std::string& text, const std::filesystem::path& folder,
                                    std::vector<AskedFile>* asked)
 {
-    if (const auto lines = checkLines(text); !lines)
+    const auto lines = readObjLines(text);
+    if (!lines)
         return lines.error();
+    if (lines->faces == 0)
+        return Error{fmt::format("no triangles in the file, {}; export its surface as polygons",
+                                 foundText(*lines))};
     ImportedMesh out;
+    if (lines->openFace > 0)
+        out.warnings.push_back(fmt::format("line {} is a face and the last, without a line end: "
+                                           "check that the file is not cut off",
+                                           lines->openFace));
     ConfinedMaterialReader materials(folder, out.warnings, asked);
     auto file = parse(text, &materials, false);
     if (!file)
@@ -287,8 +265,10 @@ Result<ImportedMesh> importObjText(const std::string& text, const std::filesyste
         if (const auto checked = checkIndices(*file, allTriangles); !checked)
             return checked.error();
         if (!allTriangles)
-            return Error{"a face could not be triangulated"};
+            return Error{"a face could not be triangulated; export it as triangles"};
     }
+    if (materials.allRead())
+        warnOfUnknown(lines->materialLine, file->materials, out.warnings);
     if (const auto added = addFaces(*file, out.mesh); !added)
         return added.error();
     addMaterials(*file, folder, asked, out);

@@ -23,25 +23,26 @@ Result<ImportedMesh> readMesh(const std::filesystem::path& mesh, const std::file
 
 } // namespace
 
-Result<LightInput> readLightInput(const std::filesystem::path& path, std::vector<AskedFile>* asked)
+std::optional<LightInput> readLightInput(const std::filesystem::path& path, JsonProblems& problems,
+                                         std::vector<AskedFile>* asked)
 {
-    auto spec = readLightSpec(path, asked);
+    auto spec = readLightSpec(path, problems, asked);
     if (!spec)
-        return spec.error();
+        return std::nullopt;
     LightInput input{std::move(*spec), {}, {}};
     if (input.spec.shape == EmitterShape::Mesh) {
-        auto mesh = readMesh(input.spec.mesh, path, asked);
-        if (!mesh)
-            return fail(mesh.error(), path.string() + ": light.source");
-        input.mesh = std::move(*mesh);
+        if (auto mesh = readMesh(input.spec.mesh, path, asked))
+            input.mesh = std::move(*mesh);
+        else
+            problems.push_back(fail(mesh.error(), path.string() + ": light.source"));
     }
     if (!input.spec.texture.empty()) {
-        auto texture = readLightPicture(input.spec.texture);
-        if (!texture)
-            return fail(texture.error(), path.string() + ": light.texture");
-        input.texture = std::move(*texture);
+        if (auto texture = readLightPicture(input.spec.texture))
+            input.texture = std::move(*texture);
+        else
+            problems.push_back(fail(texture.error(), path.string() + ": light.texture"));
     }
-    return input;
+    return problems.empty() ? std::optional(std::move(input)) : std::nullopt;
 }
 
 } // namespace penumbra

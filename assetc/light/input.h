@@ -15,9 +15,10 @@ struct LightInput {
     std::optional<LightPicture> texture; // where one is named
 };
 
-// Error: the first problem of any of the files, with its place. `asked`, if any, gets the files
-// that the description names and those that its mesh names, all beside the description.
-Result<LightInput> readLightInput(const std::filesystem::path& path,
-                                  std::vector<AskedFile>* asked = nullptr);
+// None: `problems`, which is empty before, gets those of the description, or where it has none, of
+// the files that it names. `asked`, if any, gets these and those that its mesh names, all beside
+// the description.
+std::optional<LightInput> readLightInput(const std::filesystem::path& path, JsonProblems& problems,
+                                         std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

@@ -91,7 +91,7 @@ std::vector<SelfVisibility> bakeSelfVisibility(const LightSpec& spec, const Mesh
 } // namespace
 
 Result<CompiledLight> compileLight(const std::filesystem::path& source, const LightOptions& options,
-                                   Progress& progress, std::vector<AskedFile>* asked)
+                                   Progress& progress, SourceFiles* files)
 {
     CompiledLight light;
     LightSpec& spec = light.spec;
@@ -100,12 +100,16 @@ Result<CompiledLight> compileLight(const std::filesystem::path& source, const Li
     CompileReport& report = light.asset.report;
     if (const auto fits = checkFieldBytes(options.shells, options.side, 3, place); !fits)
         return fits.error();
+    JsonProblems problems;
     auto input = [&] {
         const StageTimer timer(report.times, "import");
-        return readLightInput(source, asked);
+        return readLightInput(source, problems, files ? &files->asked : nullptr);
     }();
     if (!input)
-        return input.error();
+        return joined(problems);
+    if (files)
+        if (const auto kept = files->refuseOverwrite(source); !kept)
+            return kept.error();
     spec = input->spec;
     // The mesh that people see, as it is before cleaning.
     mesh = input->mesh ? std::move(input->mesh->mesh) : makeShapeMesh(spec);

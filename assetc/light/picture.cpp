@@ -43,8 +43,9 @@ Result<void> checkSize(std::int64_t width, std::int64_t height, std::size_t file
         return Error{fmt::format("{} x {} pixels, at most {} x {}; scale it down", width, height,
                                  kMaxLightPictureSide, kMaxLightPictureSide)};
     if (static_cast<std::uint64_t>(width * height) > fileBytes * kMaxPixelsPerByte)
-        return Error{fmt::format("{} bytes cannot hold {} x {} pixels; the file is cut", fileBytes,
-                                 width, height)};
+        return Error{fmt::format(
+            "{} bytes cannot hold {} x {} pixels; the file is cut; copy or save it again",
+            fileBytes, width, height)};
     return {};
 }
 
@@ -54,15 +55,16 @@ Result<LightPicture> decodeStb(std::span<const std::byte> bytes)
     const int size = static_cast<int>(bytes.size()); // at most kMaxTextureBytes
     int width = 0, height = 0, channels = 0;
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
-        return Error{fmt::format("not a PNG or JPEG that can be read, at most {} x {} pixels: {}",
-                                 kMaxLightPictureSide, kMaxLightPictureSide,
-                                 stbi_failure_reason())};
+        return Error{
+            fmt::format("a PNG or JPEG that is damaged, cut or larger than {} x {} pixels; "
+                        "save it again",
+                        kMaxLightPictureSide, kMaxLightPictureSide)};
     if (const auto checked = checkSize(width, height, bytes.size()); !checked)
         return checked.error();
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, 3), &stbi_image_free);
     if (pixels == nullptr)
-        return Error{fmt::format("damaged: {}", stbi_failure_reason())};
+        return Error{"a PNG or JPEG that is damaged or cut; save it again"};
 
     const std::array<float, 256> linear = linearFromSrgb8();
     LightPicture picture{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};

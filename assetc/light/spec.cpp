@@ -1,12 +1,9 @@
 #include "assetc/light/spec.h"
 
-#include "assetc/file_type.h"
 #include "assetc/import/folder.h"
-#include "assets/json_reader.h"
 #include "runtime/assert.h"
 
 #include <algorithm>
-#include <initializer_list>
 
 namespace penumbra {
 
@@ -18,7 +15,7 @@ constexpr float kMaxEmission = 1e12f; // of power and intensity; their radiance 
 struct ShapeMembers {
     const char* type;
     EmitterShape shape;
-    std::vector<std::string> members; // besides the common ones
+    std::vector<std::string_view> members; // besides the common ones
 };
 
 const std::vector<ShapeMembers>& shapes()
@@ -35,25 +32,22 @@ const std::vector<ShapeMembers>& shapes()
 
 const ShapeMembers* findShape(const JsonReader& root)
 {
-    const std::string type = root.text("type");
+    const JsonReader type = root.member("type");
+    const std::string name = type.asText();
     for (const ShapeMembers& shape : shapes())
-        if (type == shape.type)
+        if (name == shape.type)
             return &shape;
-    if (root.has("type"))
-        root.member("type").refuse(fmt::format(
-            "is {}, not one of sphere, rectangle, disc, spot, mesh", root.member("type").quoted()));
+    if (type.isText())
+        type.refuse(
+            fmt::format("is {}, not one of sphere, rectangle, disc, spot, mesh", type.quoted()));
     return nullptr;
 }
 
-void refuseUnknown(const nlohmann::json& document, const ShapeMembers& shape,
-                   const JsonReader& root)
+void refuseUnknown(const ShapeMembers& shape, const JsonReader& root)
 {
-    std::vector<std::string> allowed = {"version", "type", "radiance", "power", "reach"};
-    allowed.insert(allowed.end(), shape.members.begin(), shape.members.end());
-    for (const auto& [key, value] : document.items())
-        if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
-            root.refuse(fmt::format("has the unknown member \"{}\"; a {} takes {}", key, shape.type,
-                                    fmt::join(allowed, ", ")));
+    std::vector<std::string_view> known = {"version", "type", "radiance", "power", "reach"};
+    known.insert(known.end(), shape.members.begin(), shape.members.end());
+    root.refuseOthers(known);
 }
 
 vec3 color(const JsonReader& reader, float max)
@@ -134,6 +128,8 @@ std::filesystem::path confined(const JsonReader& reader, const std::filesystem::
                                std::vector<AskedFile>* asked)
 {
     const std::string name = reader.asText();
+    if (!reader.isText())
+        return {};
     if (name.empty()) {
         reader.refuse("names no file");
         return {};
@@ -164,24 +160,13 @@ const char* unitName(EmissionUnit unit)
                                           : "W/sr";
 }
 
-Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<AskedFile>* asked)
+std::optional<LightSpec> readLightSpec(const std::filesystem::path& path, JsonProblems& problems,
+                                       std::vector<AskedFile>* asked)
 {
-    const auto bytes = readInput(path, FileType::LightSpec, kMaxSpecBytes);
-    if (!bytes)
-        return bytes.error();
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    const auto document = parseJson(text, kMaxSpecBytes);
-    if (!document)
-        return fail(document.error(), path.string());
-
-    JsonProblems problems;
-    const JsonReader root(*document, path.string() + ": light", problems);
-    root.checkVersion(1);
-    LightSpec spec;
-    if (const ShapeMembers* shape = findShape(root)) {
-        refuseUnknown(*document, *shape, root);
-        spec.shape = shape->shape;
-        readShape(root, spec);
+    const auto read = [&](const nlohmann::json& document, JsonProblems& found) {
+        const JsonReader root(document, "light", found);
+        root.checkVersion(1);
+        LightSpec spec;
         readEmission(root, spec);
         if (root.has("reach"))
             spec.reach = root.number("reach", kMinEmitterSize, 1000 * kMaxEmitterSize);
@@ -189,12 +174,16 @@ Result<LightSpec> readLightSpec(const std::filesystem::path& path, std::vector<A
             spec.twoSided = root.flag("twoSided");
         if (root.has("texture"))
             spec.texture = confined(root.member("texture"), path.parent_path(), asked);
-        if (spec.shape == EmitterShape::Mesh)
-            spec.mesh = confined(root.member("source"), path.parent_path(), asked);
-    }
-    if (!problems.empty())
-        return problems.front();
-    return spec;
+        if (const ShapeMembers* shape = findShape(root)) {
+            refuseUnknown(*shape, root);
+            spec.shape = shape->shape;
+            readShape(root, spec);
+            if (spec.shape == EmitterShape::Mesh)
+                spec.mesh = confined(root.member("source"), path.parent_path(), asked);
+        }
+        return spec;
+    };
+    return readJsonInput<LightSpec>(path, FileType::LightSpec, kMaxSpecBytes, problems, read);
 }
 
 } // namespace penumbra

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assetc/import/folder.h"
-#include "runtime/result.h"
+#include "assetc/json_input.h"
 #include "shaders/shared/interop.h"
 
 #include <filesystem>
@@ -35,9 +35,9 @@ PENUMBRA_CONST float kMinOuterAngle = 1, kMaxOuterAngle = 89, kMinFalloffAngle =
 const char* shapeName(EmitterShape shape); // as in the description
 const char* unitName(EmissionUnit unit);   // "W/(m² sr)"
 
-// Error: the first problem of the file with its place; unknown members are problems too. `asked`,
-// if any, gets the files that the spec names.
-Result<LightSpec> readLightSpec(const std::filesystem::path& path,
-                                std::vector<AskedFile>* asked = nullptr);
+// None: `problems` gets all of the file with their places; unknown members are problems too.
+// `asked`, if any, gets the files that the spec names.
+std::optional<LightSpec> readLightSpec(const std::filesystem::path& path, JsonProblems& problems,
+                                       std::vector<AskedFile>* asked = nullptr);
 
 } // namespace penumbra

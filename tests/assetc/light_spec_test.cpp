@@ -16,7 +16,9 @@ class LightSpecFile : public testing::Test {
 protected:
     Result<LightSpec> read(const std::string& text)
     {
-        return readLightSpec(folder.write("in/light.json", text));
+        JsonProblems problems;
+        auto spec = readLightSpec(folder.write("in/light.json", text), problems);
+        return spec ? Result<LightSpec>(std::move(*spec)) : joined(problems);
     }
 
     TemporaryFolder folder;

@@ -149,10 +149,20 @@ TEST_F(Messages, WrongUsageIsOneLine)
              {bake + " --lods 2.5", "\"2.5\" is not a whole number"},
              {bake + " --lod 3", "no option --lod; did you mean --lods?; see assetc bake --help"},
              {bake + " --threshold nan", "\"nan\" is not a number from 0 to 1"},
-             {bake + " --max-side 64", "\"64\" is not 2^k + 1 from 3 to 257"},
-             {bake + " --directions 63", "\"63\" is not even"},
+             {bake + " --max-side 64", "\"64\" is not a number 2^k + 1 from 3 to 257"},
+             {bake + " --directions 63", "\"63\" is not an even number from 2 to 65536"},
              {bake + " more", "\"more\" is one argument too many"},
-             {bake + " --target-error 0.1 --shells 4", "excludes"}}) {
+             {bake + " --target-error 0.1 --shells 4",
+              "bake: --target-error beside --shells, which it picks itself; leave out one; see"},
+             {bake + " --verify --no-field",
+              "--verify beside --no-field, which leaves no field to measure; leave out one"},
+             {bake + " --jobs 1 --jobs 2", "bake: --jobs is given 2 times; give it once; see"},
+             {bake + " --jobs", "bake: --jobs takes a value; give one; see"},
+             {bake + " -o " + at("p.glb"), "--output is given 2 times; give it once"},
+             {"light " + at("lamp.json") + " -o " + at("l.glb") + " --lods 2",
+              "no option --lods; that is one of assetc bake; see"},
+             {"light " + at("lamp.json") + " -o " + at("l.glb") + " --shels 2",
+              "did you mean --shells?"}}) {
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.code, 2) << arguments;
         EXPECT_TRUE(outcome.err.starts_with("assetc: error: ")) << outcome.err;
@@ -278,6 +288,121 @@ TEST_F(Messages, SceneFilesAreBoundedAsInTheRuntime)
     const Outcome large = run("validate " + at("x.json"));
     EXPECT_EQ(large.code, 1);
     EXPECT_NE(large.out.find("a scene has at most 67108864"), std::string::npos) << large.out;
+}
+
+TEST_F(Messages, AllThatIsWrongWithALightIsListed)
+{
+    folder.write("bad.json", R"({"version":2,"type":"disc","radius":-1,"radius":-2,"colour":3,)"
+                             R"("power":[1,"2",3],"texture":"none.png"})");
+    const Outcome compiled = run("light " + at("bad.json") + " -o " + at("o.glb"));
+    const Outcome checked = run("validate " + at("bad.json"));
+    EXPECT_EQ(compiled.code, 1);
+    for (const char* says :
+         {"bad.json: has \"radius\" twice; delete one", "light.version is 2, this program reads 1",
+          "light.radius is -2, not a number from",
+          "light has the unknown member \"colour\"; known: ",
+          "light.power[1] is \"2\", not a number", "light.texture \"none.png\": No such file"}) {
+        EXPECT_NE(compiled.err.find(says), std::string::npos) << says << compiled.err;
+        EXPECT_NE(checked.out.find(says), std::string::npos) << says << checked.out;
+    }
+    EXPECT_EQ(linesOf(compiled.err), 6u) << compiled.err;
+    EXPECT_EQ(linesOf(checked.out), 7u) << checked.out;
+    EXPECT_NE(run("inspect " + at("bad.json")).err.find("; and 5 more: assetc validate"),
+              std::string::npos);
+    folder.write("none.json", R"({"version":1,"type":7,"power":[0,0,0],"reach":-1})");
+    EXPECT_EQ(linesOf(run("light " + at("none.json") + " -o " + at("o.glb")).err), 3u);
+}
+
+TEST_F(Messages, AScenesPartsAreLookedInto)
+{
+    bake("parts", "--per-node");
+    std::filesystem::path part;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "parts"))
+        if (entry.path().extension() == ".glb")
+            part = entry.path();
+    const std::string name = part.filename().string(), whole = readText(part);
+    const std::string place = ".MeshInstance.asset names \"" + name + "\", which is ";
+    std::string spoilt = whole;
+    spoilt[spoilt.size() - 100] ^= 1;
+    for (const auto& [bytes, says] :
+         {std::pair<std::string, std::string>{spoilt, place + "damaged: "},
+          {whole.substr(0, 500), place + "no compiled mesh: an unreadable binary glTF file"},
+          {"\x89PNG\r\n\x1a\n....", place + "no compiled mesh: a PNG picture"},
+          {"", place + "no compiled mesh: an empty file"}}) {
+        folder.write("parts/" + name, bytes);
+        const Outcome outcome = run("validate " + at("parts/scene.json"));
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_NE(outcome.out.find(says), std::string::npos) << outcome.out;
+        EXPECT_EQ(linesOf(outcome.out), 2u) << outcome.out; // once, though two components name it
+    }
+    folder.write("parts/" + name, whole);
+    EXPECT_EQ(run("validate " + at("parts/scene.json")).code, 0);
+}
+
+TEST_F(Messages, ShapesFarFromTheOriginAreCoarse)
+{
+    folder.write("far.obj", "v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nf 1 2 3\n");
+    const Outcome far = run("bake " + at("far.obj") + " -o " + at("o.glb") + " --no-field");
+    EXPECT_EQ(far.code, 0);
+    EXPECT_NE(far.err.find("far.obj: lies 1e+06 m from the origin, 1.41e+06 times its radius of "
+                           "0.707 m: coordinates there are whole steps of 0.062 m, so its shape "
+                           "is coarse; move it to the origin"),
+              std::string::npos)
+        << far.err;
+    folder.write("near.obj", "v 1000 0 0\nv 1001 0 0\nv 1000 1 0\nf 1 2 3\n");
+    EXPECT_EQ(run("bake " + at("near.obj") + " -o " + at("o.glb") + " --no-field").err, "");
+}
+
+TEST_F(Messages, SkiesAreRadianceAndNotBlack)
+{
+    const auto sky = [&](const std::string& lines, const std::string& pixels) {
+        folder.write("sky.hdr",
+                     "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + lines + "\n-Y 1 +X 2\n" + pixels);
+        return run("environment " + at("sky.hdr") + " -o " + at("sky.env"));
+    };
+    const auto brightest = [&] {
+        const std::string json = run("inspect --json " + at("sky.env")).out;
+        return nlohmann::json::parse(json, nullptr, false)["maxLuminance"].get<double>();
+    };
+    const std::string grey("\x80\x40\x20\x81\x80\x40\x20\x81", 8), black(8, '\0');
+    EXPECT_EQ(sky("", grey).err, "");
+    const double plain = brightest();
+    EXPECT_EQ(sky("EXPOSURE= 2.0\nEXPOSURE=0.25\n", grey).err, ""); // half, in all
+    EXPECT_NEAR(brightest(), 2 * plain, 1e-3 * plain);
+    for (const char* wrong : {"EXPOSURE=0\n", "EXPOSURE=\n", "EXPOSURE=-1\n", "EXPOSURE=1e9\n"}) {
+        const Outcome refused = sky(wrong, grey);
+        EXPECT_EQ(refused.code, 1) << wrong;
+        EXPECT_NE(refused.err.find("mend or delete the line"), std::string::npos) << refused.err;
+    }
+    const Outcome dark = sky("", black);
+    EXPECT_EQ(dark.code, 0);
+    EXPECT_NE(dark.err.find("the map is black and lights nothing"), std::string::npos) << dark.err;
+}
+
+TEST_F(Messages, BuffersOfGltfAreMeasured)
+{
+    auto square = squareGltf();
+    const std::string uri = square["buffers"][0]["uri"];
+    folder.write("short.bin", "1234");
+    for (const auto& [wrong, says] :
+         {std::pair<std::string, std::string>{"short.bin",
+                                              "buffers[0].uri is wrong: short.bin has 4 "
+                                              "bytes, and byteLength is "},
+          {uri.substr(0, uri.size() - 8), "buffers[0].uri is wrong: the data has "},
+          {"data:text/plain,abc", "buffers[0].uri is data that is not in base64"},
+          {"none.bin", "buffers[0].uri cannot be used: \"none.bin\": No such file"},
+          {"", "buffers[0] has no \"uri\", and a .gltf"}}) {
+        square["buffers"][0]["uri"] = wrong;
+        folder.write("b.gltf", square.dump());
+        const Outcome outcome = run("bake " + at("b.gltf") + " -o " + at("o.glb"));
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+    }
+    square["buffers"][0].erase("uri");
+    const auto glb = *writeGlb(square.dump(), {});
+    ASSERT_TRUE(writeFile(folder / "b.glb", std::span<const std::byte>(glb)));
+    EXPECT_NE(run("validate " + at("b.glb")).out.find("and the file's binary chunk 0; copy"),
+              std::string::npos);
 }
 
 // The limit of a description holds before its bytes have memory.

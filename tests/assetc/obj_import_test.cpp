@@ -81,12 +81,67 @@ TEST(ObjImport, DamagedLinesAreRefusedWithTheirNumber)
           {"f 1.5 2 3\n", "corner \"1.5\""},
           {"f 1 2 \\\n3\n", "continues on the next"},
           {std::string("f 1 \0 2 3\n", 11), "zero byte"},
+          {"f 1 2 3\nf 0 1 2\n", "line 5: corner \"0\" has the index 0; OBJ counts from 1"},
+          {"f 1/0/1 2 3\n", "line 4: corner \"1/0/1\" has the index 0"},
+          {"f 1 2 3\nf 1 9/7 2\nf 1 8 2\n",
+           "line 5: corner \"9/7\" is vertex 9, and the file has 3; export it again"},
+          {"f 1 2 3\nvn 0 0 1\nf 1//1 2//2 3//1\n", "line 6: corner \"2//2\" is normal 2, and"},
+          {"f -3 -4 -1\n", "line 4: corner \"-4\" counts 4 vertices back, and there are 3 before"},
+          {"f 1/ 2 3\n", "corner \"1/\" is not an index"},
+          {"f 1/1/1/1 2 3\n", "corner \"1/1/1/1\" is not an index"},
+          {"f 99999999999999999999 2 3\n", "is not an index"},
+          {"f -9223372036854775808 2 3\n", "is not an index"},
+          {"f 1 2 3\nl 0 1\n", "line 5: corner \"0\" has the index 0"},
           {"f 1 2 3\nf ", "line 5: a face with 0 corners"},
           {"f 1 2 3\nf 1 2", "line 5: a face with 2 corners"}}) {
         const auto mesh = importMesh(folder.write("bad.obj", good + damaged));
         ASSERT_FALSE(mesh) << damaged;
         EXPECT_NE(mesh.error().message.find(message), std::string::npos) << mesh.error().message;
     }
+}
+
+// The loader's own order: a face may come before its vertices.
+TEST(ObjImport, FacesMayNameLaterVertices)
+{
+    const TemporaryFolder folder;
+    EXPECT_TRUE(importMesh(folder.write("a.obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 1 1 0\n")));
+}
+
+TEST(ObjImport, AFileWithoutFacesIsSaidToHaveWhatItHas)
+{
+    const TemporaryFolder folder;
+    for (const auto& [text, says] :
+         {std::pair{"v 0 0 0\nv 1 0 0\nl 1 2\np 1\np 2\n",
+                    "no triangles in the file, only 2 vertices, 1 line, 2 lists of points; export"},
+          {"v 0 0 0\ng empty\n", "only 1 vertex; export its surface as polygons"},
+          {"o nothing\n", "in the file, nor anything else of a mesh"},
+          {"v 0 0 0\nsurf 0 1 0 1 1\nend\n", "1 vertex, 1 curved surface"}}) {
+        const auto mesh = importMesh(folder.write("a.obj", text));
+        ASSERT_FALSE(mesh) << text;
+        EXPECT_NE(mesh.error().message.find(says), std::string::npos) << mesh.error().message;
+    }
+}
+
+TEST(ObjImport, WhatMayBeLostIsWarnedOfOnce)
+{
+    const TemporaryFolder folder;
+    const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    const auto warnings = [&](const std::string& text) {
+        const auto mesh = importMesh(folder.write("a.obj", text));
+        return mesh ? mesh->warnings : std::vector<std::string>{"refused"};
+    };
+    EXPECT_EQ(warnings(square + "f 1 2 3 4\n"), std::vector<std::string>());
+    // Cut within "f 1 2 3 4".
+    EXPECT_EQ(warnings(square + "f 1 2 3"),
+              std::vector<std::string>({"line 5 is a face and the last, without a line end: check "
+                                        "that the file is not cut off"}));
+    EXPECT_EQ(warnings("mtllib a.mtl\n" + square + "usemtl blue\nf 1 2 3\nusemtl red\nf 1 3 4\n" +
+                       "usemtl black\nf 1 2 4\nusemtl blue\nf 2 3 4\n"),
+              std::vector<std::string>({"line 6: no material library has \"blue\", nor 1 more; its "
+                                        "faces get the default material"}));
+    // Said by the library that is not there.
+    EXPECT_EQ(warnings("mtllib none.mtl\n" + square + "usemtl blue\nf 1 2 3\n").size(), 1u);
 }
 
 } // namespace penumbra

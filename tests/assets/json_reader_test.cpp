@@ -88,9 +88,22 @@ TEST(JsonReader, FlagsAndUnknownMembers)
     EXPECT_EQ(root.member("b").asText(), "");
     ASSERT_EQ(problems.size(), 4u);
     EXPECT_EQ(problems[0].message, "a.off is 0, not true or false");
-    EXPECT_EQ(problems[1].message, "a has no member \"zzz\"; known: on, off");
+    EXPECT_EQ(problems[1].message, "a has the unknown member \"zzz\"; known: on, off");
     EXPECT_EQ(problems[2].message, "list is an array of 0, not an object");
     EXPECT_EQ(problems[3].message, "has no \"b\"");
+}
+
+TEST(JsonReader, MembersThatAreThereTwiceHaveAPlace)
+{
+    const std::string text = R"({"a":[1,{"b":{"c":1,"c":2}},{"b":1}],"d":{"c":1},"e":0,"e":1})";
+    JsonProblems problems;
+    const auto document = parseJson(text, 1000, problems);
+    ASSERT_TRUE(document);
+    ASSERT_EQ(problems.size(), 2u);
+    EXPECT_EQ(problems[0].message, "a[1].b has \"c\" twice; delete one");
+    EXPECT_EQ(problems[1].message, "has \"e\" twice; delete one");
+    EXPECT_EQ((*document)["e"], 1);
+    EXPECT_TRUE(parseJson(text, 1000)); // where programs write
 }
 
 // What is quoted is short and cannot command a terminal.
