@@ -37,6 +37,13 @@ const MeshAsset& AssetStore::mesh(AssetHandle handle) const
     return *m_entries[handle.index].mesh;
 }
 
+const std::string& AssetStore::path(AssetHandle handle) const
+{
+    PENUMBRA_ASSERT(handle.index < m_entries.size(), "asset {} of {}", handle.index,
+                    m_entries.size());
+    return m_entries[handle.index].path;
+}
+
 std::vector<const MeshAsset*> AssetStore::meshes() const
 {
     std::vector<const MeshAsset*> out;

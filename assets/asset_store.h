@@ -28,7 +28,8 @@ public:
     AssetHandle addMesh(MeshAsset mesh);
 
     [[nodiscard]] const MeshAsset& mesh(AssetHandle handle) const;
-    [[nodiscard]] std::vector<const MeshAsset*> meshes() const; // by handle
+    [[nodiscard]] const std::string& path(AssetHandle handle) const; // empty: made in memory
+    [[nodiscard]] std::vector<const MeshAsset*> meshes() const;      // by handle
 
 private:
     struct Entry {

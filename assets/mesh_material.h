@@ -1,5 +1,5 @@
 // How the surfaces of a mesh look. Shadow fields need MeshMaterial alone; the rest is what glTF
-// knows of a surface, kept for renderers that draw textures.
+// knows of a surface, for the rasteriser (systems/surface_data.h).
 #pragma once
 
 #include "shaders/shared/interop.h"

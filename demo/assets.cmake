@@ -24,6 +24,13 @@ foreach(shape ball chess_pawn gear mug panel rounded_cube teapot torus_knot floo
     endif()
 endforeach()
 
+foreach(shape beach_ball painted_knot)
+    set(source ${shape_dir}/${shape}.glb)
+    add_custom_command(OUTPUT ${source}
+        COMMAND penumbra-content ${shape} -o ${source} DEPENDS penumbra-content COMMENT "Shape ${shape}" VERBATIM)
+    penumbra_demo_mesh(${shape} ${source})
+endforeach()
+
 # Lights: descriptions beside the picture that one of them shows.
 set(light_dir ${CMAKE_CURRENT_BINARY_DIR}/lights)
 set(picture ${light_dir}/picture.png)

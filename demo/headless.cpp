@@ -36,9 +36,10 @@ struct Measurements {
 std::uint64_t gpuBytes(const GpuSceneBuffers& b)
 {
     std::uint64_t sum = 0;
-    for (const Buffer* buffer : {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices,
-                                 &b.bounds, &b.clusters, &b.cull, &b.visible, &b.lists, &b.radiance,
-                                 &b.drawCommands, &b.drawTemplate, &b.denseRotations})
+    for (const Buffer* buffer :
+         {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices, &b.bounds,
+          &b.clusters, &b.cull, &b.visible, &b.lists, &b.radiance, &b.drawCommands, &b.drawTemplate,
+          &b.denseRotations, &b.surfaceVertices})
         sum += buffer->bytes;
     return sum;
 }
@@ -75,7 +76,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"bytes",
              {{"fields", data.fieldSamples.size() * sizeof(uvec4)},
               {"meshes", data.receivers.size() * sizeof(ReceiverTexels) + data.indices.size() * 4},
-              {"gpu", gpuBytes(renderer.scene().buffers())},
+              {"gpu", gpuBytes(renderer.scene().buffers()) + renderer.scene().surfaces().bytes()},
               {"peakRss", peakMemory()}}}};
 }
 

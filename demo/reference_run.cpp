@@ -2,6 +2,7 @@
 
 #include "demo/cpu_scalar.h"
 #include "demo/image/flip.h"
+#include "demo/surface_picture.h"
 #include "demo/traced_scene.h"
 #include "runtime/file.h"
 #include "shaders/shared/tone_map.h"
@@ -121,7 +122,8 @@ struct TracedPicture {
 };
 
 TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, const View& view,
-                           const Image8& fields, std::uint32_t samples)
+                           const Image8& fields, const SurfacePicture& surfaces,
+                           std::uint32_t samples)
 {
     mat4 flipY(1);
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
@@ -131,8 +133,9 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, co
         ReferenceLight::fromMap(scene.ground ? aboveGround(scene.environment) : scene.environment,
                                 mat3(1), scene.intensity);
     // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
-    const ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
-                                                     {.samples = std::max(samples / 4, 64u)});
+    ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
+                                               {.samples = std::max(samples / 4, 64u)});
+    paintSurfaces(surfaces, picture);
     const Image8 shaded =
         displayImage(picture.radiance.shadowed, {fields.width, fields.height}, scene.exposure);
     TracedPicture out{fields, picture.radiance.seconds};
@@ -153,7 +156,10 @@ Result<Image8> drawErrors(Renderer& renderer, const View& view, const Receivers&
         radiance[receivers.radianceIndex[i]] = vec4(vec3(figures.perReceiver[i] * scale), 1);
     if (Result<void> set = renderer.setRadiance(radiance); !set)
         return set.error();
-    if (Result<void> drawn = renderer.drawFrame(view, Kernel::Exact, false); !drawn)
+    renderer.showSurfaces(false);
+    const Result<void> drawn = renderer.drawFrame(view, Kernel::Exact, false);
+    renderer.showSurfaces(true);
+    if (!drawn)
         return drawn.error();
     return renderer.capture();
 }
@@ -190,7 +196,11 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         *traced, scene, receivers, atReceivers(*radiance, receivers),
         atReceivers(data.lights.empty() ? *radiance : *skyOnly, receivers), options.samples);
     const RadianceErrors& errors = figures.errors;
-    const TracedPicture picture = tracePicture(*traced, scene, view, *fields, options.samples);
+    const Result<SurfacePicture> surfaces = drawSurfaces(renderer, view);
+    if (!surfaces)
+        return surfaces.error();
+    const TracedPicture picture =
+        tracePicture(*traced, scene, view, *fields, *surfaces, options.samples);
     const Result<Image8> errorImage =
         drawErrors(renderer, view, receivers, figures, scene.exposure);
     if (!errorImage)

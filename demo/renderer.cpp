@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <glm/gtc/packing.hpp>
 
 namespace penumbra {
 
@@ -46,8 +47,8 @@ Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool comb
     m_kernel = kernel;
     Result<GpuFrame> frame = m_ring.beginFrame();
     if (frame)
-        recordFrame(*frame, m_passes, m_scene, constants(view), {kernel, combine, m_exposure},
-                    m_targets);
+        recordFrame(*frame, m_passes, m_scene, constants(view),
+                    {kernel, combine, m_exposure, m_surfaces}, m_targets);
     return frame;
 }
 
@@ -95,7 +96,7 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     time("combine", [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, m_scene, kernel); });
     time("raster", [&](const GpuFrame& gpu) {
         computeToGraphics(gpu.cmd); // the radiance of the submission before
-        recordRaster(gpu, m_passes, m_scene, m_targets);
+        recordRaster(gpu, m_passes, m_scene, m_targets, m_surfaces);
     });
     time("post", [&](const GpuFrame& gpu) { recordPost(gpu, m_passes, m_targets, m_exposure); });
     if (!failed)
@@ -121,6 +122,20 @@ Result<Image8> Renderer::capture() const
     Image8 image = makeImage(extent().width, extent().height);
     std::memcpy(image.rgba.data(), pixels->data(), image.rgba.size());
     return image;
+}
+
+Result<std::vector<vec3>> Renderer::linearPicture() const
+{
+    Result<std::vector<std::byte>> bytes =
+        readBack(m_device, m_targets.radiance, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    if (!bytes)
+        return bytes.error();
+    std::vector<std::uint64_t> pixels(bytes->size() / sizeof(std::uint64_t));
+    std::memcpy(pixels.data(), bytes->data(), bytes->size());
+    std::vector<vec3> picture;
+    for (const std::uint64_t pixel : pixels)
+        picture.push_back(vec3(glm::unpackHalf4x16(pixel)));
+    return picture;
 }
 
 Result<std::vector<vec4>> Renderer::radiance() const

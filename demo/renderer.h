@@ -40,6 +40,10 @@ public:
     Result<std::vector<vec4>> radiance() const; // [SceneData::radianceCount]
     Result<CullResult> cullResult() const;
 
+    // Whether frames show the colours of surfaces, or the radiance of the receivers alone.
+    void showSurfaces(bool show) { m_surfaces = show; }
+    Result<std::vector<vec3>> linearPicture() const; // [height * width] before the tone map
+
     // Radiance from elsewhere, for drawFrame(…, combine = false).
     Result<void> setRadiance(std::span<const vec4> radiance);
 
@@ -60,6 +64,7 @@ private:
     LightSh m_light{};
     float m_backgroundIntensity = 1, m_exposure = 1;
     Kernel m_kernel = Kernel::Exact;
+    bool m_surfaces = true;
     std::uint32_t m_slot = 0; // of the frame last drawn
 };
 

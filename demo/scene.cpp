@@ -2,6 +2,7 @@
 
 #include "demo/scenes/falling.h"
 #include "demo/scenes/lights.h"
+#include "demo/scenes/materials.h"
 #include "runtime/file.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@ std::span<const SceneEntry> sceneEntries()
          loadFallingScene},
         {"lights", "two coloured spheres and a picture that shines move among objects",
          loadLightsScene},
+        {"materials", "glossy balls whose exponents change, a texture and vertex colours",
+         loadMaterialsScene},
     };
     return kScenes;
 }

@@ -1,5 +1,6 @@
 #include "demo/simulation.h"
 
+#include "demo/gloss_cycle.h"
 #include "demo/orbit.h"
 #include "systems/physics_system.h"
 
@@ -15,6 +16,8 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
     }
     m_schedule.add<const Orbit, Transform>(
         "orbits", "simulate", [this](ecs::SystemContext& context) { moveOrbits(context, m_time); });
+    m_schedule.add<const GlossCycle, Material>(
+        "gloss", "simulate", [this](ecs::SystemContext& context) { cycleGloss(context, m_time); });
     m_schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
                    const RenderLight>("gather", "extract", [this](ecs::SystemContext& context) {
         gatherChanged(context, m_changes);

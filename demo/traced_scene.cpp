@@ -20,7 +20,7 @@ Result<TracedScene> traceable(const SceneData& data, const CpuInstances& rows,
     for (std::uint32_t i = 0; i < data.instances.size(); ++i) {
         instances.push_back(
             {meshes[data.instances[i].mesh], worldFromObject(rows.instances[i]), i});
-        materials.push_back(data.instances[i].material);
+        materials.push_back(receiverMaterial(data, data.instances[i]));
     }
     std::vector<AreaLight> lights;
     for (std::size_t l = 0; l < data.lights.size(); ++l) {
@@ -49,9 +49,9 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& rows,
     Receivers out;
     for (const ClusterEntities& visible : cullAndSort(data, rows, constants)) {
         const SceneCluster& cluster = data.clusters[visible.cluster];
-        if (data.instances[cluster.instance].emission != vec3(0))
-            continue;
         const MeshRange& mesh = data.meshes[data.instances[cluster.instance].mesh];
+        if (data.instances[cluster.instance].emission * mesh.emission != vec3(0))
+            continue;
         const GpuInstance& g = rows.instances[cluster.instance];
         for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
             if (cluster.firstReceiver + v >= mesh.firstReceiver + mesh.vertexCount)

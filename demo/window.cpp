@@ -2,6 +2,7 @@
 
 #include "demo/editor/editor.h"
 #include "demo/editor/overlay.h"
+#include "demo/paint.h"
 #include "demo/renderer.h"
 #include "demo/simulation.h"
 #include "runtime/vk/barriers.h"
@@ -45,6 +46,7 @@ struct Controls {
     Camera camera;
     double cursorX = 0, cursorY = 0;
     bool paused = false, restart = false, panel = true;
+    PaintKeys paint;
     Kernel kernel = Kernel::Exact;
 };
 
@@ -96,6 +98,19 @@ void onKey(GLFWwindow* window, int key, int, int action, int)
         c.kernel = c.kernel == Kernel::Exact ? Kernel::Literal : Kernel::Exact;
     else if (key == GLFW_KEY_E)
         c.panel = !c.panel;
+    else if (key == GLFW_KEY_G)
+        c.paint.toggle = !c.paint.toggle;
+    else if (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)
+        c.paint.factor *= key == GLFW_KEY_UP ? 2.0f : 0.5f;
+}
+
+// The cursor in clip space, +Y up.
+vec2 cursorClip(GLFWwindow* window, const Controls& controls)
+{
+    int width = 0, height = 0;
+    glfwGetWindowSize(window, &width, &height);
+    return {2 * static_cast<float>(controls.cursorX) / static_cast<float>(std::max(width, 1)) - 1,
+            1 - 2 * static_cast<float>(controls.cursorY) / static_cast<float>(std::max(height, 1))};
 }
 
 VkExtent2D framebufferExtent(GLFWwindow* window)
@@ -245,7 +260,8 @@ Result<void> runWindow(const DemoOptions& options)
         return overlay.error();
     Editor editor;
     fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
-               "kernel, E: editor, Esc: quit\n");
+               "kernel, G: gloss of the object under the cursor, up and down: its exponent, E: "
+               "editor, Esc: quit\n");
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();
@@ -277,11 +293,12 @@ Result<void> runWindow(const DemoOptions& options)
         (*overlay)->begin();
         if (controls.panel)
             drawPanel(editor, controls, *show);
-        applyChanges(show->simulation->advance(controls.paused ? 0 : seconds), renderer.scene());
-
         const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
-        Result<GpuFrame> frame =
-            renderer.beginFrame(viewOf(controls.camera, aspect), controls.kernel);
+        const View view = viewOf(controls.camera, aspect);
+        paint(*show->scene, view, cursorClip(window, controls),
+              std::exchange(controls.paint, PaintKeys{}));
+        applyChanges(show->simulation->advance(controls.paused ? 0 : seconds), renderer.scene());
+        Result<GpuFrame> frame = renderer.beginFrame(view, controls.kernel);
         if (!frame)
             return frame.error();
         Result<bool> visible = swapchain->acquire(frame->slot, extent);

@@ -2,7 +2,7 @@
 // cluster_cull: one invocation per cluster of every instance. Keeps a cluster if one of its triangles may be seen.
 //   reads   clusters [clusterCount], bounds, instances
 //   writes  visible (order by arrival; nothing depends on it), cull.sortGroups, cull.combineGroups,
-//           drawCommands[instance].instanceCount
+//           drawCommands[draws of the instance].instanceCount
 // Tests: shaders/shared/visibility.h.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
@@ -32,5 +32,7 @@ void main()
     const uint slot = atomicAdd(cull.combineGroups[0], 1u);
     visible[slot] = i;
     atomicMax(cull.sortGroups[0], slot / kSortGroup + 1u);
-    drawCommands[cluster.instance * 5u + 1u] = 1u; // instanceCount; all writers write the same
+    const uint firstDraw = uint(int(g.material1.w)), endDraw = firstDraw + uint(int(g.emission.w));
+    for (uint draw = firstDraw; draw < endDraw; ++draw)
+        drawCommands[draw * 5u + 1u] = 1u; // instanceCount; all writers write the same
 }

@@ -19,7 +19,7 @@ layout(set = 0, binding = 12) uniform usamplerBuffer visibleTexels;
 layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][kListStride]: instance.h
 layout(set = 0, binding = 14) uniform usamplerBuffer listTexels;
 layout(set = 0, binding = 15, scalar) writeonly buffer Radiance { vec4 radiance[]; };
-layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [instance] VkDrawIndexedIndirectCommand
+layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [draw] VkDrawIndexedIndirectCommand
 layout(set = 0, binding = 17, scalar) buffer DenseRotations { DenseRotation denseRotations[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer FieldSamples { uvec4 fieldSamples[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Receivers { ReceiverTexels receivers[]; };

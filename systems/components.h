@@ -39,8 +39,11 @@ template <>
 inline constexpr auto ecs::kFields<MeshInstance> = ecs::fields(PENUMBRA_FIELD(MeshInstance, asset,
                                                                               .kind = "mesh"));
 
-// How the surface reflects; without it, the asset's own material.  Written by: spawn, editor.  Read
-// by: gather.
+// How the surface reflects; without it, the asset's own material. The albedo takes the place of the
+// base colour factor of every material of the asset; its textures and vertex colours still multiply
+// it, and its emission stays. The gloss is one for the whole entity: without this component, that
+// of the material with the largest area. Diffuse and glossy part have the same colour
+// (shaders/shared/surface.h). May change at any time.  Written by: spawn, editor.  Read by: gather.
 struct Material {
     static constexpr std::string_view kName = "Material";
     vec3 albedo{0.8f};       // linear Rec. 709

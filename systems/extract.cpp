@@ -67,14 +67,16 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
             instance.mesh = mesh.asset.index;
             place(instance, transform);
             instance.material = assets.mesh(mesh.asset).material;
-            if (const Material* material = world.tryGet<const Material>(entity))
+            if (const Material* material = world.tryGet<const Material>(entity)) {
                 instance.material = meshMaterial(*material);
+                instance.repainted = true;
+            }
             if (const auto* occluder = world.tryGet<const ShadowFieldOccluder>(entity)) {
                 need(entity, occluder->asset, FieldKind::Occlusion, "occluder");
                 instance.occluder = occluder->asset.index;
             }
-            if (const auto* emitter = world.tryGet<const ShadowFieldEmitter>(entity))
-                instance.emission = emitter->intensity;
+            const auto* emitter = world.tryGet<const ShadowFieldEmitter>(entity);
+            instance.emission = emitter ? emitter->intensity : vec3(1);
             instances.push_back(instance);
             instanceEntities.push_back(entity);
         });
@@ -98,7 +100,11 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
     addIndices<RenderLight>(world, lightEntities);
     if (!failed)
         return failed.error();
-    return buildSceneData(assets.meshes(), std::move(instances), std::move(lights));
+    SceneData data = buildSceneData(assets.meshes(), std::move(instances), std::move(lights));
+    for (SurfaceImage& image : data.surfaces.images)
+        if (const std::string& path = assets.path({image.mesh}); !path.empty())
+            image.place = path + ": " + image.place;
+    return data;
 }
 
 void SceneChanges::clear()
@@ -140,6 +146,7 @@ void applyChanges(const SceneChanges& changes, GpuScene& scene)
     for (const auto& [index, material] : changes.materials)
         edit(index, [&, &look = material](SceneInstance& instance) {
             instance.material = meshMaterial(look);
+            instance.repainted = true;
         });
     for (const auto& [index, transform] : changes.lights)
         editLight(index, [&, &at = transform](SceneLight& light) { place(light, at); });

@@ -2,6 +2,7 @@
 
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/gpu_zone.h"
+#include "systems/draw_instances.h"
 
 #include <bit>
 #include <cstddef>
@@ -66,7 +67,7 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
         recordCombine(gpu, passes, scene, options.kernel);
     computeToGraphics(gpu.cmd);
 
-    recordRaster(gpu, passes, scene, targets);
+    recordRaster(gpu, passes, scene, targets, options.surfaces);
     recordPost(gpu, passes, targets, options.exposure);
 }
 
@@ -112,26 +113,16 @@ void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScen
 }
 
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                  const FrameTargets& targets)
+                  const FrameTargets& targets, bool surfaces)
 {
     const GpuZone zone(gpu.cmd, "raster");
     transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage,
                     kColorTarget);
     transitionImage(gpu.cmd, targets.depth.handle, targets.depth.aspect, kUndefinedImage,
                     kDepthTarget);
-    const GpuSceneBuffers& b = scene.buffers();
     beginRendering(gpu.cmd, targets);
-    bind(gpu.cmd, passes.raster, scene.slot(gpu.slot).set, nullptr, 0);
-    vkCmdBindIndexBuffer(gpu.cmd, b.indices.handle, 0, VK_INDEX_TYPE_UINT32);
-    for (std::size_t i = 0; i < scene.data().instances.size(); ++i) {
-        const MeshRange& mesh = scene.data().meshes[scene.data().instances[i].mesh];
-        const VkBuffer buffers[] = {b.receivers.handle, b.radiance.handle, b.instances.handle};
-        const VkDeviceSize offsets[] = {mesh.firstReceiver * sizeof(ReceiverTexels),
-                                        scene.data().firstRadiance[i] * sizeof(vec4), 0};
-        vkCmdBindVertexBuffers(gpu.cmd, 0, 3, buffers, offsets);
-        vkCmdDrawIndexedIndirect(gpu.cmd, b.drawCommands.handle,
-                                 i * sizeof(VkDrawIndexedIndirectCommand), 1, 0);
-    }
+    vkCmdBindIndexBuffer(gpu.cmd, scene.buffers().indices.handle, 0, VK_INDEX_TYPE_UINT32);
+    drawInstances(gpu, passes, scene, surfaces);
     bind(gpu.cmd, passes.background, scene.slot(gpu.slot).set, nullptr, 0);
     vkCmdDraw(gpu.cmd, 3, 1, 0, 0);
     vkCmdEndRendering(gpu.cmd);
@@ -197,19 +188,21 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
                           .pushBytes = 4});
     constexpr auto kPerInstance = VK_VERTEX_INPUT_RATE_INSTANCE;
     constexpr auto kVec4 = VK_FORMAT_R32G32B32A32_SFLOAT;
+    constexpr auto kPerVertex = VK_VERTEX_INPUT_RATE_VERTEX;
     constexpr std::uint32_t kRow0 = offsetof(GpuInstance, worldFromObject0);
-    graphics(passes.raster,
-             {.name = "raster",
-              .vertexShader = "raster.vert",
-              .fragmentShader = "raster.frag",
-              .vertexBindings = {{0, sizeof(ReceiverTexels), VK_VERTEX_INPUT_RATE_VERTEX},
-                                 {1, sizeof(vec4), VK_VERTEX_INPUT_RATE_VERTEX},
-                                 {2, sizeof(GpuInstance), kPerInstance}},
-              .vertexAttributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
-                                   {1, 1, kVec4, 0},
-                                   {2, 2, kVec4, kRow0},
-                                   {3, 2, kVec4, kRow0 + 16},
-                                   {4, 2, kVec4, kRow0 + 32}}});
+    GraphicsDesc raster{.name = "raster",
+                        .vertexShader = "raster.vert",
+                        .fragmentShader = "raster.frag",
+                        .vertexBindings = {{0, sizeof(ReceiverTexels), kPerVertex},
+                                           {1, sizeof(vec4), kPerVertex},
+                                           {2, sizeof(GpuInstance), kPerInstance}},
+                        .vertexAttributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                                             {1, 1, kVec4, 0},
+                                             {2, 2, kVec4, kRow0},
+                                             {3, 2, kVec4, kRow0 + 16},
+                                             {4, 2, kVec4, kRow0 + 32}}};
+    graphics(passes.raster, raster);
+    graphics(passes.rasterSurface, surfaceDesc(raster));
     graphics(passes.background, {.name = "background",
                                  .vertexShader = "background.vert",
                                  .fragmentShader = "background.frag",

@@ -14,7 +14,7 @@ namespace penumbra {
 // Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
 struct FramePasses {
     Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, raster,
-        background, post;
+        rasterSurface, background, post;
     [[nodiscard]] const Pipeline& combine(Kernel kernel) const
     {
         return kernel == Kernel::Literal ? combineLiteral : combineExact;
@@ -25,7 +25,7 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights);
 
 // Targets of one size.
 struct FrameTargets {
-    Image radiance; // RGBA16F, linear
+    Image radiance; // RGBA16F, linear; after a frame in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
     Image depth;
     // RGBA8, sRGB-encoded; after a frame in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL. May be drawn on.
     Image display;
@@ -40,6 +40,7 @@ struct FrameOptions {
     Kernel kernel = Kernel::Exact;
     bool combine = true; // false: the radiance buffer is given from outside (reference, cpu-scalar)
     float exposure = 1;
+    bool surfaces = true; // false: the picture is the radiance of the receivers, nothing else
 };
 
 // Records everything from changed instances to `targets.display`.
@@ -54,7 +55,7 @@ void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes, const GpuS
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
                    Kernel kernel);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                  const FrameTargets& targets);
+                  const FrameTargets& targets, bool surfaces = true);
 void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets,
                 float exposure);
 

@@ -91,11 +91,16 @@ struct Maker {
 std::vector<VkDrawIndexedIndirectCommand> drawTemplate(const SceneData& scene)
 {
     std::vector<VkDrawIndexedIndirectCommand> commands;
+    // instanceCount 0: pass cluster_cull sets it to 1 where a cluster is visible. The vertex offset
+    // is in the bindings, since positions and radiance start at different vertices.
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
-        // instanceCount 0: pass cluster_cull sets it to 1 where a cluster is visible. The vertex
-        // offset is in the bindings, since positions and radiance start at different vertices.
-        commands.push_back({mesh.indexCount, 0, mesh.firstIndex, 0, i});
+        if (mesh.surface.plain())
+            commands.push_back({mesh.indexCount, 0, mesh.firstIndex, 0, i});
+        for (std::uint32_t p = 0; p < mesh.surface.partCount; ++p) {
+            const SurfacePart& part = scene.surfaces.parts[mesh.surface.firstPart + p];
+            commands.push_back({part.indexCount, 0, mesh.firstIndex + part.firstIndex, 0, i});
+        }
     }
     return commands;
 }
@@ -132,7 +137,7 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     PENUMBRA_ASSERT(!data.instances.empty() && !data.clusters.empty(),
                     "a scene has at least one instance");
     GpuScene scene;
-    const std::uint64_t instances = data.instances.size(), clusters = data.clusters.size();
+    const std::uint64_t clusters = data.clusters.size();
     const std::uint64_t rows = rowCount(data);
     const std::uint32_t groups = device.properties.limits.maxComputeWorkGroupCount[0];
     if (clusters > groups)
@@ -140,11 +145,15 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
                                  "{}; use fewer instances or coarser meshes",
                                  clusters, kClusterReceivers, groups)};
 
-    constexpr std::size_t kMaxSamples = 1u << 24; // rows of instances hold them as floats
-    if (data.fieldSamples.size() > kMaxSamples)
+    constexpr std::size_t kMaxWhole = 1u << 24; // rows of instances hold these numbers as floats
+    if (data.fieldSamples.size() > kMaxWhole)
         return Error{fmt::format("the scene's fields have {} samples, at most {}; bake them with "
                                  "fewer shells or a smaller --max-side",
-                                 data.fieldSamples.size(), kMaxSamples)};
+                                 data.fieldSamples.size(), kMaxWhole)};
+    if (data.firstDraw.back() > kMaxWhole)
+        return Error{fmt::format("the scene takes {} draws, at most {}; use fewer instances or "
+                                 "materials",
+                                 data.firstDraw.back(), kMaxWhole)};
     Maker maker{device};
     GpuSceneBuffers& b = scene.m_buffers;
     b.fields = maker.with("fields", data.fields, kStorageUse);
@@ -168,8 +177,12 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     b.radiance = maker.with("radiance", std::vector<vec4>(data.radianceCount),
                             kStorageUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     b.drawTemplate = maker.with("draw template", drawTemplate(data), kStorageUse);
-    b.drawCommands = maker.empty("draw commands", instances * sizeof(VkDrawIndexedIndirectCommand),
-                                 kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    b.drawCommands =
+        maker.empty("draw commands", data.firstDraw.back() * sizeof(VkDrawIndexedIndirectCommand),
+                    kStorageUse | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    if (!data.surfaces.vertices.empty())
+        b.surfaceVertices = maker.with("surface vertices", data.surfaces.vertices,
+                                       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     b.denseRotations = maker.empty("dense rotations", rows * sizeof(DenseRotation), kStorageUse);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
         GpuSceneSlot slot;
@@ -181,6 +194,10 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     }
     if (!maker.result)
         return maker.result.error();
+    Result<GpuSurfaces> surfaces = GpuSurfaces::create(device, data.surfaces);
+    if (!surfaces)
+        return surfaces.error();
+    scene.m_surfaces = std::move(*surfaces);
     Result<Image> map = uploadMap(device, environment);
     if (!map)
         return map.error();

@@ -8,6 +8,7 @@
 #include "runtime/vk/descriptors.h"
 #include "runtime/vk/device.h"
 #include "runtime/vk/image.h"
+#include "systems/gpu_surfaces.h"
 #include "systems/scene_data.h"
 
 #include <span>
@@ -21,6 +22,7 @@ std::span<const Binding> sceneBindings();
 struct GpuSceneBuffers {
     Buffer fields, instances, fieldSamples, receivers, indices, bounds, clusters;
     Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations;
+    Buffer surfaceVertices; // none: all meshes are plain
     Image environmentMap;
     UniqueSampler environmentSampler;
 };
@@ -36,8 +38,8 @@ struct GpuSceneSlot {
 
 class GpuScene {
 public:
-    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, or a scene larger
-    // than the device can bind or dispatch.
+    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, a scene larger than
+    // the device can bind or dispatch, or a texture that cannot be decoded.
     static Result<GpuScene> create(const Device& device, SceneData data,
                                    const Environment& environment, std::uint32_t framesInFlight);
 
@@ -53,6 +55,7 @@ public:
 
     [[nodiscard]] const SceneData& data() const { return m_data; }
     [[nodiscard]] const GpuSceneBuffers& buffers() const { return m_buffers; }
+    [[nodiscard]] const GpuSurfaces& surfaces() const { return m_surfaces; }
     [[nodiscard]] const GpuSceneSlot& slot(std::uint32_t index) const { return m_slots[index]; }
 
 private:
@@ -60,6 +63,7 @@ private:
 
     SceneData m_data;
     GpuSceneBuffers m_buffers;
+    GpuSurfaces m_surfaces;
     DescriptorSets m_sets;
     UniqueDescriptorSetLayout m_layout;
     std::vector<GpuSceneSlot> m_slots;

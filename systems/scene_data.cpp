@@ -112,6 +112,8 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
         }
         if (!mesh->materials.empty())
             range.emission = mesh->materials.front().emissive;
+        const auto index = static_cast<std::uint32_t>(scene.meshes.size());
+        range.surface = appendSurface(*mesh, index, range.receiverCount, scene.surfaces);
         scene.meshes.push_back(range);
     }
     if (scene.fields.empty()) { // a scene without occluders still binds its buffers
@@ -122,8 +124,10 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
     scene.instances = std::move(instances);
     scene.lights = std::move(lights);
     checkNames(scene);
+    scene.firstDraw.push_back(0);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
+        scene.firstDraw.push_back(scene.firstDraw.back() + drawCount(mesh));
         scene.firstRadiance.push_back(scene.radianceCount);
         for (std::uint32_t c = 0; c < mesh.clusterCount; ++c)
             scene.clusters.push_back({static_cast<std::uint32_t>(i), mesh.firstBounds + c,
@@ -152,14 +156,38 @@ InstanceInput rowInput(const SceneData& scene, std::uint32_t row)
         return input;
     }
     const SceneInstance& instance = scene.instances[row];
+    const MeshRange& mesh = scene.meshes[instance.mesh];
     InstanceInput input = placed(instance.position, instance.scale, instance.rotation);
-    input.albedo = instance.material.albedo;
-    input.glossFraction = instance.material.glossFraction;
-    input.glossExponent = instance.material.glossExponent;
-    input.emission = instance.emission * scene.meshes[instance.mesh].emission;
+    const MeshMaterial material = receiverMaterial(scene, instance);
+    input.albedo = material.albedo;
+    input.glossFraction = material.glossFraction;
+    input.glossExponent = material.glossExponent;
+    if (mesh.surface.plain())
+        input.emission = instance.emission * mesh.emission;
+    input.firstDraw = scene.firstDraw[row];
+    input.drawCount = drawCount(mesh);
     if (instance.occluder)
         input.field = scene.meshes[*instance.occluder].field;
     return input;
+}
+
+MeshMaterial receiverMaterial(const SceneData& scene, const SceneInstance& instance)
+{
+    MeshMaterial material = instance.material;
+    if (!scene.meshes[instance.mesh].surface.plain())
+        material.albedo = vec3(1);
+    return material;
+}
+
+std::uint32_t drawCount(const MeshRange& mesh)
+{
+    return std::max(mesh.surface.partCount, 1u);
+}
+
+SurfacePush surfacePush(const SceneInstance& instance, const SurfacePart& part)
+{
+    return {instance.repainted ? instance.material.albedo : part.albedo, part.alpha,
+            instance.emission * part.emissive, part.alphaCutoff};
 }
 
 } // namespace penumbra

@@ -6,6 +6,7 @@
 #include "assets/mesh_asset.h"
 #include "shaders/shared/instance.h"
 #include "shaders/shared/transfer.h"
+#include "systems/surface_data.h"
 
 #include <optional>
 #include <span>
@@ -19,8 +20,9 @@ struct SceneInstance {
     float scale = 1;
     vec4 rotation{0, 0, 0, 1}; // quaternion x, y, z, w
     MeshMaterial material;
+    bool repainted = false; // the albedo is the instance's own: instead of that of each material
     std::optional<std::uint32_t> occluder; // asset whose field says what the instance blocks
-    vec3 emission{0}; // factor of the mesh's own radiance: what it shines as the owner of a light
+    vec3 emission{0};                      // factor of the mesh's own radiance
 };
 
 // A local light. Radiance does not change with the scale, so power goes with its square.
@@ -43,7 +45,8 @@ struct MeshRange {
     std::uint32_t firstBounds = 0, clusterCount = 0;
     std::uint32_t field = kNoField;
     FieldKind fieldKind = FieldKind::Occlusion;
-    vec3 emission{0}; // of its surface, where it is a light: W/(m² sr)
+    vec3 emission{0}; // of its first material: W/(m² sr)
+    SurfaceRange surface;
 };
 
 struct SceneData {
@@ -54,6 +57,7 @@ struct SceneData {
     std::vector<ClusterBounds> bounds;
     std::vector<FieldInput> fields;  // at least one
     std::vector<uvec4> fieldSamples; // of a field [channel][y][x][shell], one side: its largest
+    SurfaceData surfaces;
 
     std::vector<SceneInstance> instances;
     std::vector<SceneLight> lights;
@@ -61,6 +65,7 @@ struct SceneData {
     std::vector<std::uint32_t>
         firstRadiance; // [instanceCount] of the instance's receivers in the radiance buffer
     std::uint32_t radianceCount = 0;
+    std::vector<std::uint32_t> firstDraw;             // [instanceCount + 1] in the draw commands
     std::uint64_t vertexCount = 0, triangleCount = 0; // of all instances, without padding
 };
 
@@ -72,5 +77,15 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
 // Rows of the GPU's instance table: instances, then lights.
 std::uint32_t rowCount(const SceneData& scene);
 InstanceInput rowInput(const SceneData& scene, std::uint32_t row);
+
+// What the receivers of an instance reflect: white where its mesh has a surface, which then knows
+// the colours.
+MeshMaterial receiverMaterial(const SceneData& scene, const SceneInstance& instance);
+
+// Draw commands of an instance: one per part of its surface, or one.
+std::uint32_t drawCount(const MeshRange& mesh);
+
+// What pass raster pushes for a part of the instance's surface.
+SurfacePush surfacePush(const SceneInstance& instance, const SurfacePart& part);
 
 } // namespace penumbra

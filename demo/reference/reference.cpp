@@ -202,6 +202,7 @@ ReferencePicture renderReference(const ReferenceScene& scene, const ReferenceLig
     const Integrator integrator(scene, lighting, options);
     ReferencePicture picture;
     picture.instance.assign(count, kNoInstance);
+    picture.emission.assign(count, vec3(0));
     picture.radiance = shadeAll(count, [&](std::size_t i) {
         const vec3 direction = pixelDirection(camera, i);
         const ReferenceHit hit = scene.closest(camera.eye, direction);
@@ -220,6 +221,7 @@ ReferencePicture renderReference(const ReferenceScene& scene, const ReferenceLig
                     light.emission(hit.triangle, hit.barycentric, -direction).radiance);
                 point.shadowed += own;
                 point.unshadowed += own;
+                picture.emission[i] += vec3(own);
             }
         return point;
     });

@@ -77,7 +77,8 @@ struct ReferencePicture {
     ReferenceRadiance
         radiance; // [height * width] row 0 the top; background pixels hold the light's radiance
     std::vector<std::uint32_t>
-        instance; // [height * width] what the pixel shows; kNoInstance: background
+        instance;               // [height * width] what the pixel shows; kNoInstance: background
+    std::vector<vec3> emission; // [height * width] part of `radiance`: the surface's own
 };
 
 // One ray through the middle of each pixel, as the rasteriser samples it; each hit is shaded as a

@@ -1,5 +1,7 @@
 #include "runtime/vk/image.h"
 
+#include <algorithm>
+
 namespace penumbra {
 
 VkImageAspectFlags aspectOf(VkFormat format)
@@ -64,7 +66,7 @@ Result<Image> createImage(const Device& device, const ImageDesc& desc)
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = desc.format;
     info.extent = {desc.extent.width, desc.extent.height, 1};
-    info.mipLevels = 1;
+    info.mipLevels = desc.mipLevels;
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.tiling = VK_IMAGE_TILING_OPTIMAL;
@@ -91,6 +93,7 @@ Result<Image> createImage(const Device& device, const ImageDesc& desc)
     image.extent = desc.extent;
     image.format = desc.format;
     image.aspect = aspectOf(desc.format);
+    image.mipLevels = desc.mipLevels;
     VkImage handle = VK_NULL_HANDLE;
     if (Result<void> ok = vkTry(vkCreateImage(device.handle, &info, nullptr, &handle),
                                 fmt::format("create image '{}'", desc.name));
@@ -122,7 +125,7 @@ Result<Image> createImage(const Device& device, const ImageDesc& desc)
     viewInfo.image = handle;
     viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
     viewInfo.format = desc.format;
-    viewInfo.subresourceRange = {image.aspect, 0, 1, 0, 1};
+    viewInfo.subresourceRange = {image.aspect, 0, desc.mipLevels, 0, 1};
     VkImageView view = VK_NULL_HANDLE;
     if (Result<void> ok = vkTry(vkCreateImageView(device.handle, &viewInfo, nullptr, &view),
                                 fmt::format("create a view of '{}'", desc.name));
@@ -135,15 +138,32 @@ Result<Image> createImage(const Device& device, const ImageDesc& desc)
 
 UniqueSampler createSampler(const Device& device, VkFilter filter, VkSamplerAddressMode addressMode)
 {
+    return createSampler(device, {.mag = filter,
+                                  .min = filter,
+                                  .mipmaps = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                  .maxLod = 0,
+                                  .u = addressMode,
+                                  .v = addressMode});
+}
+
+UniqueSampler createSampler(const Device& device, const SamplerDesc& desc)
+{
     VkSamplerCreateInfo info = {VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-    info.magFilter = filter;
-    info.minFilter = filter;
-    info.addressModeU = addressMode;
-    info.addressModeV = addressMode;
-    info.addressModeW = addressMode;
+    info.magFilter = desc.mag;
+    info.minFilter = desc.min;
+    info.mipmapMode = desc.mipmaps;
+    info.maxLod = desc.maxLod;
+    info.addressModeU = desc.u;
+    info.addressModeV = desc.v;
+    info.addressModeW = desc.u;
     VkSampler sampler = VK_NULL_HANDLE;
     vkCheck(vkCreateSampler(device.handle, &info, nullptr, &sampler), "create a sampler");
     return {device.handle, sampler};
+}
+
+VkExtent2D mipExtent(VkExtent2D extent, std::uint32_t level)
+{
+    return {std::max(extent.width >> level, 1u), std::max(extent.height >> level, 1u)};
 }
 
 } // namespace penumbra

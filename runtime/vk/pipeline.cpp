@@ -55,7 +55,7 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
 // Everything but the VkPipeline itself.
 Pipeline createLayout(const Device& device, const std::string& name, VkPipelineBindPoint bindPoint,
                       VkShaderStageFlags pushStages, std::uint32_t pushBytes,
-                      std::span<const Binding> bindings)
+                      std::span<const Binding> bindings, std::span<const Binding> drawBindings = {})
 {
     PENUMBRA_ASSERT(pushBytes <= kMaxPushBytes && pushBytes % 4 == 0, "'{}' pushes {} bytes", name,
                     pushBytes);
@@ -66,12 +66,16 @@ Pipeline createLayout(const Device& device, const std::string& name, VkPipelineB
     pipeline.pushBytes = pushBytes;
     if (!bindings.empty())
         pipeline.setLayout = createSetLayout(device, bindings);
+    PENUMBRA_ASSERT(drawBindings.empty() || pipeline.setLayout, "'{}' has set 1 and no set 0",
+                    name);
+    if (!drawBindings.empty())
+        pipeline.drawSetLayout = createSetLayout(device, drawBindings);
 
-    const VkDescriptorSetLayout setLayout = pipeline.setLayout;
+    const VkDescriptorSetLayout setLayouts[] = {pipeline.setLayout, pipeline.drawSetLayout};
     const VkPushConstantRange range = {pushStages, 0, pushBytes};
     VkPipelineLayoutCreateInfo info = {VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-    info.setLayoutCount = setLayout ? 1 : 0;
-    info.pSetLayouts = &setLayout;
+    info.setLayoutCount = (setLayouts[0] ? 1u : 0u) + (setLayouts[1] ? 1u : 0u);
+    info.pSetLayouts = setLayouts;
     info.pushConstantRangeCount = pushBytes > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
@@ -126,7 +130,7 @@ Result<Pipeline> createGraphicsPipeline(const Device& device, const GraphicsDesc
     const bool hasDepth = desc.depthFormat != VK_FORMAT_UNDEFINED;
     Pipeline pipeline = createLayout(device, desc.name, VK_PIPELINE_BIND_POINT_GRAPHICS,
                                      VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-                                     desc.pushBytes, desc.bindings);
+                                     desc.pushBytes, desc.bindings, desc.drawBindings);
 
     const Specialisation constants(desc.constants);
     const UniqueShaderModule vertex = createModule(device, desc.vertexShader);
@@ -221,6 +225,12 @@ void bind(VkCommandBuffer cmd, const Pipeline& pipeline, VkDescriptorSet set, co
         vkCmdBindDescriptorSets(cmd, pipeline.bindPoint, pipeline.layout, 0, 1, &set, 0, nullptr);
     if (pushBytes > 0)
         vkCmdPushConstants(cmd, pipeline.layout, pipeline.pushStages, 0, pipeline.pushBytes, push);
+}
+
+void bindDrawSet(VkCommandBuffer cmd, const Pipeline& pipeline, VkDescriptorSet set)
+{
+    PENUMBRA_ASSERT(pipeline.drawSetLayout, "'{}' has no set 1", pipeline.name);
+    vkCmdBindDescriptorSets(cmd, pipeline.bindPoint, pipeline.layout, 1, 1, &set, 0, nullptr);
 }
 
 void setViewport(VkCommandBuffer cmd, VkExtent2D extent)

@@ -1,5 +1,6 @@
-// Compute and graphics pipelines from embedded shaders. At most one descriptor set (set 0) and one
-// push constant block; specialisation constants choose variants.
+// Compute and graphics pipelines from embedded shaders. One descriptor set (set 0), a second one
+// (set 1) for what changes between the draws of a graphics pipeline, and one push constant block;
+// specialisation constants choose variants.
 #pragma once
 
 #include "runtime/vk/descriptors.h"
@@ -16,7 +17,8 @@ struct Pipeline {
     VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
     VkShaderStageFlags pushStages = 0;
     std::uint32_t pushBytes = 0;
-    UniqueDescriptorSetLayout setLayout; // null without bindings
+    UniqueDescriptorSetLayout setLayout;     // null without bindings
+    UniqueDescriptorSetLayout drawSetLayout; // of set 1; null without drawBindings
     UniquePipelineLayout layout;
     UniquePipeline handle;
 };
@@ -35,6 +37,7 @@ struct GraphicsDesc {
     std::string vertexShader;
     std::string fragmentShader; // empty: depth only
     std::vector<Binding> bindings;
+    std::vector<Binding> drawBindings;    // of set 1; needs bindings
     std::uint32_t pushBytes = 0;          // seen by both stages
     std::vector<std::uint32_t> constants; // given to both stages
 
@@ -73,6 +76,9 @@ void bindAndPush(VkCommandBuffer cmd, const Pipeline& pipeline, const Push& push
 {
     bindAndPush(cmd, pipeline, VK_NULL_HANDLE, push);
 }
+
+// Binds set 1 for the draws that follow; the pipeline is bound.
+void bindDrawSet(VkCommandBuffer cmd, const Pipeline& pipeline, VkDescriptorSet set);
 
 // The whole target, Y up (negative viewport height): clip space +Y is the top row, and a triangle
 // counter-clockwise seen with Y up is a front face.

@@ -11,18 +11,21 @@ Result<Buffer> createStaging(const Device& device, VkDeviceSize bytes, MemoryKin
     return createBuffer(device, {.name = "staging", .bytes = bytes, .usage = 0, .memory = kind});
 }
 
-VkBufferImageCopy wholeImage(const Image& image)
+VkDeviceSize levelBytes(const Image& image, std::uint32_t level)
 {
-    PENUMBRA_ASSERT((image.aspect & (image.aspect - 1)) == 0, "copies of one aspect only");
-    VkBufferImageCopy region = {};
-    region.imageSubresource = {image.aspect, 0, 0, 1};
-    region.imageExtent = {image.extent.width, image.extent.height, 1};
-    return region;
+    const VkExtent2D extent = mipExtent(image.extent, level);
+    return VkDeviceSize{extent.width} * extent.height * bytesPerPixel(image.format);
 }
 
-VkDeviceSize imageBytes(const Image& image)
+VkBufferImageCopy wholeLevel(const Image& image, std::uint32_t level, VkDeviceSize offset)
 {
-    return VkDeviceSize{image.extent.width} * image.extent.height * bytesPerPixel(image.format);
+    PENUMBRA_ASSERT((image.aspect & (image.aspect - 1)) == 0, "copies of one aspect only");
+    const VkExtent2D extent = mipExtent(image.extent, level);
+    VkBufferImageCopy region = {};
+    region.bufferOffset = offset;
+    region.imageSubresource = {image.aspect, level, 0, 1};
+    region.imageExtent = {extent.width, extent.height, 1};
+    return region;
 }
 
 // Whoever used the image before, or will: submitAndWait's barriers cover the accesses.
@@ -103,16 +106,21 @@ Result<void> upload(const Device& device, const Buffer& target, std::span<const 
 Result<void> upload(const Device& device, const Image& target, std::span<const std::byte> pixels,
                     VkImageLayout finalLayout)
 {
-    PENUMBRA_ASSERT(pixels.size() == imageBytes(target), "{} bytes for an image of {}",
-                    pixels.size(), imageBytes(target));
+    std::vector<VkBufferImageCopy> regions;
+    VkDeviceSize bytes = 0;
+    for (std::uint32_t level = 0; level < target.mipLevels; ++level) {
+        regions.push_back(wholeLevel(target, level, bytes));
+        bytes += levelBytes(target, level);
+    }
+    PENUMBRA_ASSERT(pixels.size() == bytes, "{} bytes for an image of {}", pixels.size(), bytes);
     const Result<Buffer> staging = createStaging(device, pixels.size(), MemoryKind::Upload);
     if (!staging)
         return staging.error();
     std::memcpy(staging->mapped, pixels.data(), pixels.size());
     return submitAndWait(device, [&](VkCommandBuffer cmd) {
-        const VkBufferImageCopy region = wholeImage(target);
         transitionImage(cmd, target.handle, target.aspect, kUndefinedImage, kCopyTarget);
-        vkCmdCopyBufferToImage(cmd, staging->handle, target.handle, kCopyTarget.layout, 1, &region);
+        vkCmdCopyBufferToImage(cmd, staging->handle, target.handle, kCopyTarget.layout,
+                               static_cast<std::uint32_t>(regions.size()), regions.data());
         transitionImage(cmd, target.handle, target.aspect, kCopyTarget, anyUse(finalLayout));
     });
 }
@@ -141,12 +149,12 @@ Result<std::vector<std::byte>> readBack(const Device& device, const Buffer& sour
 Result<std::vector<std::byte>> readBack(const Device& device, const Image& source,
                                         VkImageLayout layout)
 {
-    const VkDeviceSize bytes = imageBytes(source);
+    const VkDeviceSize bytes = levelBytes(source, 0);
     const Result<Buffer> staging = createStaging(device, bytes, MemoryKind::Readback);
     if (!staging)
         return staging.error();
     Result<void> copied = submitAndWait(device, [&](VkCommandBuffer cmd) {
-        const VkBufferImageCopy region = wholeImage(source);
+        const VkBufferImageCopy region = wholeLevel(source, 0, 0);
         transitionImage(cmd, source.handle, source.aspect, anyUse(layout), kCopySource);
         vkCmdCopyImageToBuffer(cmd, source.handle, kCopySource.layout, staging->handle, 1, &region);
         transitionImage(cmd, source.handle, source.aspect, kCopySource, anyUse(layout));

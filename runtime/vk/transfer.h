@@ -20,7 +20,8 @@ Result<void> submitAndWait(const Device& device,
 Result<void> upload(const Device& device, const Buffer& target, std::span<const std::byte> bytes,
                     VkDeviceSize offset = 0);
 
-// Fills the image and leaves it in `finalLayout`. `pixels`: rows without padding.
+// Fills the image and leaves it in `finalLayout`. `pixels`: rows without padding, one mip level
+// after the other.
 Result<void> upload(const Device& device, const Image& target, std::span<const std::byte> pixels,
                     VkImageLayout finalLayout);
 
@@ -28,7 +29,7 @@ Result<std::vector<std::byte>> readBack(const Device& device, const Buffer& sour
                                         VkDeviceSize offset = 0,
                                         VkDeviceSize bytes = VK_WHOLE_SIZE);
 
-// Rows without padding. The image is in `layout` before and after.
+// The first mip level, rows without padding. The image is in `layout` before and after.
 Result<std::vector<std::byte>> readBack(const Device& device, const Image& source,
                                         VkImageLayout layout);
 

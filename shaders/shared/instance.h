@@ -33,9 +33,9 @@ struct InstanceInput {
     float glossExponent;
     uint field; // index of a FieldInput, kNoField: not an occluder
     uint owner; // of a light: the instance that is its surface, kNoOwner: none
-    float padding0;
-    vec3 emission; // radiance of the surface itself, W/(m² sr)
-    float padding1;
+    uint firstDraw;
+    vec3 emission;  // radiance of the surface itself, W/(m² sr)
+    uint drawCount; // draw commands from firstDraw on; of a light 0
 };
 
 // One per field asset.
@@ -68,8 +68,8 @@ struct GpuInstance {
     vec4 worldFromObject1;
     vec4 worldFromObject2;
     vec4 material;  // albedo, glossFraction
-    vec4 material1; // glossExponent, scale, of a light: owner + 1 (0: none), 0
-    vec4 emission;  // w unused
+    vec4 material1; // glossExponent, scale, of a light: owner + 1 (0: none), firstDraw
+    vec4 emission;  // radiance, drawCount
 };
 
 // Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
@@ -170,9 +170,9 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
     g.worldFromObject2 =
         vec4(i.scale * r[0][2], i.scale * r[1][2], i.scale * r[2][2], i.position.z);
     g.material = vec4(i.albedo, i.glossFraction);
-    g.material1 =
-        vec4(i.glossExponent, i.scale, i.owner == kNoOwner ? 0.0f : float(i.owner + 1u), 0.0f);
-    g.emission = vec4(i.emission, 0.0f);
+    g.material1 = vec4(i.glossExponent, i.scale, i.owner == kNoOwner ? 0.0f : float(i.owner + 1u),
+                       float(i.firstDraw));
+    g.emission = vec4(i.emission, float(i.drawCount));
     return g;
 }
 

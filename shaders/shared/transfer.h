@@ -2,7 +2,8 @@
 // T_p of Zhou et al. 2005 Fig. 5, and what the product gives against the light.
 //   f(w) = (1 - g) max(0, n.w) / pi  +  g (e + 2) / (2 pi) max(0, r.w)^e max(0, n.w)
 // n normal, r mirror direction of the view, g gloss fraction, e Phong exponent. Reflected radiance
-// = albedo times the integral of L V f. The same f is ray-traced in demo/reference.
+// = albedo times the integral of L V f: the albedo tints both lobes (shaders/shared/surface.h). The
+// same f is ray-traced in demo/reference.
 #ifndef PENUMBRA_SHADERS_SHARED_TRANSFER_H
 #define PENUMBRA_SHADERS_SHARED_TRANSFER_H
 #include "shaders/shared/instance.h"

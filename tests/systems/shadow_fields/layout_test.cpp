@@ -1,6 +1,7 @@
 // The GPU's struct offsets, read from SPIR-V, against the C++ compiler's.
 #include "runtime/vk/shader_code.h"
 #include "shaders/shared/instance.h"
+#include "shaders/shared/surface.h"
 #include "shaders/shared/transfer.h"
 #include "tests/support/spirv_offsets.h"
 
@@ -20,6 +21,8 @@ TEST(Layout, InstanceInputAndField)
     EXPECT_SAME_OFFSET(input, InstanceInput, albedo);
     EXPECT_SAME_OFFSET(input, InstanceInput, glossFraction);
     EXPECT_SAME_OFFSET(input, InstanceInput, field);
+    EXPECT_SAME_OFFSET(input, InstanceInput, firstDraw);
+    EXPECT_SAME_OFFSET(input, InstanceInput, drawCount);
     EXPECT_EQ(input.arrayStride, sizeof(InstanceInput));
     const SpirvStruct field = spirvStruct(shaderCode("instance_update.comp"), "FieldInput");
     EXPECT_SAME_OFFSET(field, FieldInput, radius);
@@ -52,6 +55,14 @@ TEST(Layout, ClustersAndResults)
     EXPECT_SAME_OFFSET(cull, CullResult, pairs);
     EXPECT_EQ(spirvStruct(shaderCode("combine_literal.comp"), "ReceiverTexels").arrayStride,
               sizeof(ReceiverTexels));
+}
+
+TEST(Layout, SurfacePush)
+{
+    const SpirvStruct push = spirvStruct(shaderCode("raster_surface.frag"), "SurfacePush");
+    EXPECT_SAME_OFFSET(push, SurfacePush, alpha);
+    EXPECT_SAME_OFFSET(push, SurfacePush, emission);
+    EXPECT_SAME_OFFSET(push, SurfacePush, alphaCutoff);
 }
 
 TEST(Layout, FrameConstants)
