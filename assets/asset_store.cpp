@@ -5,36 +5,53 @@
 
 namespace penumbra {
 
-Result<AssetHandle> AssetStore::loadMesh(const std::filesystem::path& path)
+template <class Asset, class Decode>
+Result<AssetHandle> AssetStore::load(Entries<Asset>& entries, const std::filesystem::path& path,
+                                     std::uint64_t maxBytes, Decode decode)
 {
-    const std::string key = path.lexically_normal().string();
-    for (std::uint32_t i = 0; i < m_entries.size(); ++i)
-        if (m_entries[i].path == key)
+    std::string key = path.lexically_normal().string();
+    for (std::uint32_t i = 0; i < entries.size(); ++i)
+        if (entries[i].path == key)
             return AssetHandle{i};
-
-    constexpr std::uint64_t kMaxAssetBytes =
-        1u << 30; // twice the largest field and mesh that the format allows
-    Result<std::vector<std::byte>> bytes = readFile(path, kMaxAssetBytes);
+    Result<std::vector<std::byte>> bytes = readFile(path, maxBytes);
     if (!bytes)
         return bytes.error();
-    Result<MeshAsset> mesh = decodeMeshAsset(*bytes);
-    if (!mesh)
-        return fail(mesh.error(), path.string());
-    m_entries.push_back({key, std::make_unique<const MeshAsset>(std::move(*mesh))});
-    return AssetHandle{static_cast<std::uint32_t>(m_entries.size() - 1)};
+    Result<Asset> asset = decode(*bytes);
+    if (!asset)
+        return fail(asset.error(), path.string());
+    return add(entries, std::move(key), std::move(*asset));
+}
+
+template <class Asset>
+AssetHandle AssetStore::add(Entries<Asset>& entries, std::string path, Asset asset)
+{
+    entries.push_back({std::move(path), std::make_unique<const Asset>(std::move(asset))});
+    return AssetHandle{static_cast<std::uint32_t>(entries.size() - 1)};
+}
+
+template <class Asset>
+const Asset& AssetStore::get(const Entries<Asset>& entries, AssetHandle handle)
+{
+    PENUMBRA_ASSERT(handle.index < entries.size(), "asset {} of {}", handle.index, entries.size());
+    return *entries[handle.index].asset;
+}
+
+Result<AssetHandle> AssetStore::loadMesh(const std::filesystem::path& path)
+{
+    constexpr std::uint64_t kMaxBytes =
+        1u << 30; // twice the largest field and mesh that the format allows
+    return load(m_meshes, path, kMaxBytes,
+                [](std::span<const std::byte> bytes) { return decodeMeshAsset(bytes); });
 }
 
 AssetHandle AssetStore::addMesh(MeshAsset mesh)
 {
-    m_entries.push_back({"", std::make_unique<const MeshAsset>(std::move(mesh))});
-    return AssetHandle{static_cast<std::uint32_t>(m_entries.size() - 1)};
+    return add(m_meshes, "", std::move(mesh));
 }
 
 const MeshAsset& AssetStore::mesh(AssetHandle handle) const
 {
-    PENUMBRA_ASSERT(handle.index < m_entries.size(), "asset {} of {}", handle.index,
-                    m_entries.size());
-    return *m_entries[handle.index].mesh;
+    return get(m_meshes, handle);
 }
 
 const std::string& AssetStore::path(AssetHandle handle) const
@@ -47,9 +64,30 @@ const std::string& AssetStore::path(AssetHandle handle) const
 std::vector<const MeshAsset*> AssetStore::meshes() const
 {
     std::vector<const MeshAsset*> out;
-    for (const Entry& entry : m_entries)
-        out.push_back(entry.mesh.get());
+    for (const Entry<MeshAsset>& entry : m_meshes)
+        out.push_back(entry.asset.get());
     return out;
+}
+
+Result<AssetHandle> AssetStore::loadEnvironment(const std::filesystem::path& path)
+{
+    constexpr std::uint64_t kMaxBytes = 16u << 20; // a .env of the largest map takes 1 MiB
+    return load(m_environments, path, kMaxBytes, decodeEnvironment);
+}
+
+AssetHandle AssetStore::addEnvironment(Environment environment)
+{
+    return add(m_environments, "", std::move(environment));
+}
+
+const Environment& AssetStore::environment(AssetHandle handle) const
+{
+    return get(m_environments, handle);
+}
+
+bool AssetStore::hasEnvironment(AssetHandle handle) const
+{
+    return handle.index < m_environments.size();
 }
 
 } // namespace penumbra

@@ -3,6 +3,7 @@
 //   const MeshAsset& mesh = store.mesh(*bunny);
 #pragma once
 
+#include "assets/environment.h"
 #include "assets/mesh_asset.h"
 
 #include <filesystem>
@@ -13,7 +14,7 @@
 
 namespace penumbra {
 
-// An index that stays valid for the store's life.
+// An index that stays valid for the store's life. Meshes and environments count apart.
 struct AssetHandle {
     std::uint32_t index = 0xffffffff;
     friend bool operator==(AssetHandle, AssetHandle) = default;
@@ -31,12 +32,31 @@ public:
     [[nodiscard]] const std::string& path(AssetHandle handle) const; // empty: made in memory
     [[nodiscard]] std::vector<const MeshAsset*> meshes() const;      // by handle
 
+    // The same for environment maps (.env).
+    Result<AssetHandle> loadEnvironment(const std::filesystem::path& path);
+    AssetHandle addEnvironment(Environment environment);
+    [[nodiscard]] const Environment& environment(AssetHandle handle) const;
+    [[nodiscard]] bool hasEnvironment(AssetHandle handle) const;
+
 private:
+    template <class Asset>
     struct Entry {
         std::string path; // empty: made in memory
-        std::unique_ptr<const MeshAsset> mesh;
+        std::unique_ptr<const Asset> asset;
     };
-    std::vector<Entry> m_entries;
+    template <class Asset>
+    using Entries = std::vector<Entry<Asset>>;
+
+    template <class Asset, class Decode>
+    static Result<AssetHandle> load(Entries<Asset>& entries, const std::filesystem::path& path,
+                                    std::uint64_t maxBytes, Decode decode);
+    template <class Asset>
+    static AssetHandle add(Entries<Asset>& entries, std::string path, Asset asset);
+    template <class Asset>
+    static const Asset& get(const Entries<Asset>& entries, AssetHandle handle);
+
+    Entries<MeshAsset> m_meshes;
+    Entries<Environment> m_environments;
 };
 
 } // namespace penumbra

@@ -42,6 +42,8 @@ void project(Environment& environment)
         const double polar = (fine + 0.5) / (height * splitY) * std::numbers::pi;
         for (std::uint32_t x = 0; x < width; ++x) {
             const glm::dvec3 radiance(environment.map[fine / splitY * width + x]);
+            if (radiance == glm::dvec3(0))
+                continue; // half of a map that was cut at the horizon
             for (std::uint32_t i = 0; i < splitX; ++i) {
                 const double u = (x * splitX + i + 0.5) / (width * splitX);
                 const double azimuth = (2.0 * u - 1.0) * std::numbers::pi;

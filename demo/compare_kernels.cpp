@@ -42,7 +42,8 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
 
     const std::uint32_t every = std::max(frames / kComparedFrames, 1u);
     for (std::uint32_t f = 0; f < frames; ++f) {
-        applyChanges(simulation.advance(1.0f / 60), renderer.scene());
+        if (Result<void> applied = renderer.apply(simulation.advance(1.0f / 60)); !applied)
+            return applied;
         if (f % every != every - 1)
             continue;
         // Invisible clusters keep old radiance: start from the same for all.

@@ -62,7 +62,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"frames", measured.frames},
             {"objects", dynamic},
             {"occluders", occluders},
-            {"lights", 1 + data.lights.size()}, // the environment
+            {"lights", scene.world.query<const EnvironmentLight>().count() + data.lights.size()},
             {"vertices", data.vertexCount},
             {"triangles", data.triangleCount},
             {"visibleReceivers", measured.visibleReceivers},
@@ -92,7 +92,8 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
                       const DemoOptions& options, Measurements& measured)
 {
     const auto start = Clock::now();
-    applyChanges(simulation.advance(1.0f / 60), renderer.scene());
+    if (Result<void> applied = renderer.apply(simulation.advance(1.0f / 60)); !applied)
+        return applied;
     measured.cpu.add("simulate", millisecondsSince(start));
     if (options.cpuScalar) {
         const CpuFrame cpu =

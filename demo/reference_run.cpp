@@ -4,6 +4,7 @@
 #include "demo/image/flip.h"
 #include "demo/surface_picture.h"
 #include "demo/traced_scene.h"
+#include "demo/traced_sky.h"
 #include "runtime/file.h"
 #include "shaders/shared/tone_map.h"
 
@@ -85,15 +86,14 @@ struct Figures {
 Figures measure(const TracedScene& traced, const DemoScene& scene, const Receivers& receivers,
                 std::span<const vec3> test, std::span<const vec3> testSky, std::uint32_t samples)
 {
-    const Environment lit = scene.ground ? aboveGround(scene.environment) : scene.environment;
+    const TracedSky skies = tracedSky(scene);
     const auto trace = [&](const ReferenceLight& sky, std::span<const AreaLight> lights) {
         return shadeReference(traced.scene, {sky, lights}, receivers.receivers,
                               {.samples = samples});
     };
-    const ReferenceRadiance sky = trace(ReferenceLight::fromMap(lit, mat3(1), scene.intensity), {});
-    const ReferenceRadiance sky4 =
-        trace(ReferenceLight::fromSh4(lit.sh4, mat3(1), scene.intensity), {});
-    const ReferenceRadiance local = trace(ReferenceLight::fromMap(lit, mat3(1), 0), traced.lights);
+    const ReferenceRadiance sky = trace(skies.maps, {});
+    const ReferenceRadiance sky4 = trace(skies.order4, {});
+    const ReferenceRadiance local = trace(ReferenceLight::sum({}), traced.lights);
 
     Figures figures;
     const std::vector<vec3> shadowed = sum(sky.shadowed, local.shadowed);
@@ -129,9 +129,7 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, co
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
     const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, fields.width,
                                  fields.height};
-    const ReferenceLight sky =
-        ReferenceLight::fromMap(scene.ground ? aboveGround(scene.environment) : scene.environment,
-                                mat3(1), scene.intensity);
+    const ReferenceLight sky = tracedSky(scene).maps;
     // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
     ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
                                                {.samples = std::max(samples / 4, 64u)});

@@ -2,7 +2,6 @@
 
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/transfer.h"
-#include "systems/extract.h"
 
 #include <chrono>
 #include <cstring>
@@ -13,7 +12,7 @@ namespace penumbra {
 Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoScene& scene,
                                                    VkExtent2D extent)
 {
-    std::unique_ptr<Renderer> renderer(new Renderer(device));
+    std::unique_ptr<Renderer> renderer(new Renderer(device, scene));
     Result<SceneData> data = extractScene(scene.world, scene.assets);
     if (!data)
         return data.error();
@@ -21,23 +20,35 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoSce
     if (!passes)
         return passes.error();
     renderer->m_passes = std::move(*passes);
-    Result<GpuScene> gpuScene = GpuScene::create(device, std::move(*data), scene.environment,
-                                                 renderer->m_ring.framesInFlight());
+    Result<GpuScene> gpuScene =
+        GpuScene::create(device, std::move(*data), {}, renderer->m_ring.framesInFlight());
     if (!gpuScene)
         return gpuScene.error();
     renderer->m_scene = std::move(*gpuScene);
-    renderer->m_light = environmentLight(
-        scene.ground ? aboveGround(scene.environment) : scene.environment, scene.intensity);
-    renderer->m_backgroundIntensity = scene.intensity;
-    renderer->m_exposure = scene.exposure;
+    SceneChanges first;
+    std::as_const(scene.world)
+        .query<const EnvironmentLight>()
+        .each([&](const EnvironmentLight& light) { first.environments.push_back(light); });
+    first.relit = true;
+    if (Result<void> lit = renderer->apply(first); !lit)
+        return lit.error();
     if (Result<void> sized = renderer->resize(extent); !sized)
         return sized.error();
     return renderer;
 }
 
+Result<void> Renderer::apply(const SceneChanges& changes)
+{
+    applyChanges(changes, m_scene);
+    if (!changes.relit)
+        return {};
+    m_lighting.set(changes.environments);
+    return m_scene.setBackground(m_lighting.background());
+}
+
 FrameConstants Renderer::constants(const View& view) const
 {
-    return frameConstants(view, m_light, m_backgroundIntensity);
+    return frameConstants(view, m_lighting.light());
 }
 
 Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool combine)

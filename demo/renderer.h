@@ -5,6 +5,8 @@
 #include "demo/image/image.h"
 #include "demo/scene.h"
 #include "runtime/vk/device.h"
+#include "systems/environment_lighting.h"
+#include "systems/extract.h"
 #include "systems/frame.h"
 #include "systems/techniques/shadow_fields/combine_cpu.h"
 
@@ -14,9 +16,12 @@ namespace penumbra {
 
 class Renderer {
 public:
-    // Extracts `scene`; the device outlives the renderer.
+    // Extracts `scene`; it and the device outlive the renderer.
     static Result<std::unique_ptr<Renderer>> create(const Device& device, DemoScene& scene,
                                                     VkExtent2D extent);
+
+    // From the next frame on. Error: out of memory, for a map that was not drawn before.
+    Result<void> apply(const SceneChanges& changes);
 
     // Begins a frame, records it up to the display image, and leaves the command buffer open: end
     // it with endFrame, or record a copy of display() first.
@@ -48,21 +53,24 @@ public:
     Result<void> setRadiance(std::span<const vec4> radiance);
 
     [[nodiscard]] GpuScene& scene() { return m_scene; }
-    [[nodiscard]] const LightSh& light() const { return m_light; }
+    [[nodiscard]] const LightSh& light() const { return m_lighting.light(); }
     [[nodiscard]] FrameConstants constants(const View& view) const;
     [[nodiscard]] const Image& display() const { return m_targets.display; }
     [[nodiscard]] FrameRing& ring() { return m_ring; }
 
 private:
-    explicit Renderer(const Device& device) : m_device(device), m_ring(device) {}
+    Renderer(const Device& device, const DemoScene& scene)
+        : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground),
+          m_exposure(scene.exposure)
+    {}
 
     const Device& m_device;
     FramePasses m_passes;
     FrameTargets m_targets;
     GpuScene m_scene;
     FrameRing m_ring;
-    LightSh m_light{};
-    float m_backgroundIntensity = 1, m_exposure = 1;
+    EnvironmentLighting m_lighting;
+    float m_exposure;
     Kernel m_kernel = Kernel::Exact;
     bool m_surfaces = true;
     std::uint32_t m_slot = 0; // of the frame last drawn

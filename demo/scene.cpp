@@ -3,7 +3,8 @@
 #include "demo/scenes/falling.h"
 #include "demo/scenes/lights.h"
 #include "demo/scenes/materials.h"
-#include "runtime/file.h"
+#include "demo/scenes/sky.h"
+#include "runtime/ecs/name.h"
 
 #include <algorithm>
 #include <fmt/ranges.h>
@@ -19,6 +20,8 @@ std::span<const SceneEntry> sceneEntries()
          loadLightsScene},
         {"materials", "glossy balls whose exponents change, a texture and vertex colours",
          loadMaterialsScene},
+        {"sky", "the sky over objects at rest turns once and fades to another and back, in 8 s",
+         loadSkyScene},
     };
     return kScenes;
 }
@@ -41,16 +44,16 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
 }
 
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
-                                                  const std::string& environment)
+                                                  const std::string& environment, float intensity)
 {
     auto scene = std::make_unique<DemoScene>();
     scene->name = std::move(name);
     scene->ground = true;
-    Result<Environment> sky = loadEnvironment(
-        options.assets, options.environment.empty() ? environment : options.environment);
-    if (!sky)
+    if (Result<ecs::Entity> sky = addEnvironment(
+            *scene, options.assets, options.environment.empty() ? environment : options.environment,
+            intensity);
+        !sky)
         return sky.error();
-    scene->environment = std::move(*sky);
     Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / "floor.glb");
     if (!floor)
         return floor.error();
@@ -59,29 +62,31 @@ Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, s
     return scene;
 }
 
-Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name)
+std::vector<std::string> environmentNames(const std::filesystem::path& assets)
+{
+    std::vector<std::string> names;
+    std::error_code ec;
+    const std::filesystem::directory_iterator end;
+    for (std::filesystem::directory_iterator entry(assets, ec); entry != end; entry.increment(ec))
+        if (entry->path().extension() == ".env")
+            names.push_back(entry->path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Result<ecs::Entity> addEnvironment(DemoScene& scene, const std::filesystem::path& assets,
+                                   const std::string& name, float intensity)
 {
     const std::filesystem::path path = assets / (name + ".env");
     std::error_code ec;
-    if (!std::filesystem::exists(path, ec)) {
-        std::vector<std::string> names;
-        const std::filesystem::directory_iterator end;
-        for (std::filesystem::directory_iterator entry(assets, ec); entry != end;
-             entry.increment(ec))
-            if (entry->path().extension() == ".env")
-                names.push_back(entry->path().stem().string());
-        std::sort(names.begin(), names.end());
+    if (!std::filesystem::exists(path, ec))
         return Error{fmt::format("no environment is called '{}'; {} has: {}", name, assets.string(),
-                                 fmt::join(names, ", "))};
-    }
-    constexpr std::uint64_t kMaxBytes = 16u << 20; // a .env of the largest map takes 1 MiB
-    Result<std::vector<std::byte>> bytes = readFile(path, kMaxBytes);
-    if (!bytes)
-        return bytes.error();
-    Result<Environment> environment = decodeEnvironment(*bytes);
-    if (!environment)
-        return fail(environment.error(), path.string());
-    return environment;
+                                 fmt::join(environmentNames(assets), ", "))};
+    const Result<AssetHandle> map = scene.assets.loadEnvironment(path);
+    if (!map)
+        return map.error();
+    return scene.world.create(ecs::Name(name),
+                              EnvironmentLight{.asset = *map, .intensity = intensity});
 }
 
 } // namespace penumbra

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "assets/asset_store.h"
-#include "assets/environment.h"
 #include "runtime/ecs/world.h"
 #include "systems/components.h"
 #include "systems/physics/physics_world.h"
@@ -20,17 +19,16 @@ struct DemoScene {
     AssetStore assets;
     ecs::World world;
     std::optional<PhysicsWorld> physics;
-    Environment environment; // the whole map, for the background
-    bool ground = false;     // y < 0 is solid: light comes from above the horizon only
-    float intensity = 1;     // of the environment
-    float exposure = 1;      // display value per W/(m² sr)
+    bool ground = false; // y < 0 is solid: light comes from above the horizon only
+    float exposure = 1;  // display value per W/(m² sr)
     Camera camera;
 };
 
 struct SceneOptions {
     std::filesystem::path assets; // folder of compiled assets
     std::uint64_t seed = 1;
-    std::string environment; // name of a .env in `assets`; empty: the scene's own
+    std::string
+        environment; // name of a .env in `assets`, for the first of the scene; empty: its own
 };
 
 struct SceneEntry {
@@ -45,9 +43,15 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
 // A scene on the floor, which lies in the light: the sky that the options ask for, else
 // `environment`, and floor.glb. Error: one of them is missing or damaged.
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
-                                                  const std::string& environment);
+                                                  const std::string& environment,
+                                                  float intensity = 1);
 
-// `name` of `assets`, without .env. Error: no such map, the message lists all; or a damaged one.
-Result<Environment> loadEnvironment(const std::filesystem::path& assets, const std::string& name);
+// An entity with an EnvironmentLight, named as its map: `name` of the folder `assets`, without
+// .env. Error: no such map, the message lists all; or a damaged one.
+Result<ecs::Entity> addEnvironment(DemoScene& scene, const std::filesystem::path& assets,
+                                   const std::string& name, float intensity = 1);
+
+// All that addEnvironment knows, sorted.
+std::vector<std::string> environmentNames(const std::filesystem::path& assets);
 
 } // namespace penumbra

@@ -2,6 +2,7 @@
 
 #include "demo/gloss_cycle.h"
 #include "demo/orbit.h"
+#include "demo/sky_motion.h"
 #include "systems/physics_system.h"
 
 namespace penumbra {
@@ -18,10 +19,15 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
         "orbits", "simulate", [this](ecs::SystemContext& context) { moveOrbits(context, m_time); });
     m_schedule.add<const GlossCycle, Material>(
         "gloss", "simulate", [this](ecs::SystemContext& context) { cycleGloss(context, m_time); });
-    m_schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
-                   const RenderLight>("gather", "extract", [this](ecs::SystemContext& context) {
-        gatherChanged(context, m_changes);
-    });
+    m_schedule.add<const SkyMotion, EnvironmentLight>(
+        "skies", "simulate", [this](ecs::SystemContext& context) { moveSkies(context, m_time); });
+    m_schedule.add<const SkyFade, EnvironmentLight>(
+        "sky fades", "simulate",
+        [this](ecs::SystemContext& context) { fadeSkies(context, m_seconds); });
+    m_schedule.add<const Transform, const Material, const ShadowFieldEmitter,
+                   const EnvironmentLight, const RenderInstance, const RenderLight>(
+        "gather", "extract",
+        [this](ecs::SystemContext& context) { gatherChanged(context, m_changes); });
 }
 
 const SceneChanges& Simulation::advance(float seconds)

@@ -5,6 +5,7 @@
 #include "demo/paint.h"
 #include "demo/renderer.h"
 #include "demo/simulation.h"
+#include "demo/sky_control.h"
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/instance.h"
 #include "runtime/vk/swapchain.h"
@@ -45,7 +46,7 @@ struct Surface {
 struct Controls {
     Camera camera;
     double cursorX = 0, cursorY = 0;
-    bool paused = false, restart = false, panel = true;
+    bool paused = false, restart = false, panel = true, nextSky = false;
     PaintKeys paint;
     Kernel kernel = Kernel::Exact;
 };
@@ -94,9 +95,11 @@ void onKey(GLFWwindow* window, int key, int, int action, int)
         c.paused = !c.paused;
     else if (key == GLFW_KEY_R)
         c.restart = true;
+    else if (key == GLFW_KEY_E)
+        c.nextSky = true;
     else if (key == GLFW_KEY_K)
         c.kernel = c.kernel == Kernel::Exact ? Kernel::Literal : Kernel::Exact;
-    else if (key == GLFW_KEY_E)
+    else if (key == GLFW_KEY_TAB)
         c.panel = !c.panel;
     else if (key == GLFW_KEY_G)
         c.paint.toggle = !c.paint.toggle;
@@ -111,6 +114,24 @@ vec2 cursorClip(GLFWwindow* window, const Controls& controls)
     glfwGetWindowSize(window, &width, &height);
     return {2 * static_cast<float>(controls.cursorX) / static_cast<float>(std::max(width, 1)) - 1,
             1 - 2 * static_cast<float>(controls.cursorY) / static_cast<float>(std::max(height, 1))};
+}
+
+// Keys that are held down turn the sky and make it brighter or darker.
+Result<void> controlSky(GLFWwindow* window, Controls& c, DemoScene& scene,
+                        const std::filesystem::path& assets, float seconds)
+{
+    constexpr float kRadiansPerSecond = 0.8f, kStopsPerSecond = 1.5f, kFadeSeconds = 2;
+    const auto direction = [&](int more, int less) {
+        const auto held = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1 : 0; };
+        return static_cast<float>(held(more) - held(less)) * seconds;
+    };
+    if (const float turn = direction(GLFW_KEY_RIGHT, GLFW_KEY_LEFT); turn != 0)
+        turnSky(scene.world, turn * kRadiansPerSecond);
+    if (const float brighter = direction(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN); brighter != 0)
+        scaleSky(scene.world, std::exp2(brighter * kStopsPerSecond));
+    if (std::exchange(c.nextSky, false))
+        return fadeToNextSky(scene, assets, kFadeSeconds);
+    return {};
 }
 
 VkExtent2D framebufferExtent(GLFWwindow* window)
@@ -259,9 +280,10 @@ Result<void> runWindow(const DemoOptions& options)
     if (!overlay)
         return overlay.error();
     Editor editor;
-    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
-               "kernel, G: gloss of the object under the cursor, up and down: its exponent, E: "
-               "editor, Esc: quit\n");
+    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: kernel\n"
+               "left/right: turn the sky, page up/down: its brightness, E: next sky\n"
+               "G: gloss of the object under the cursor, up/down: its exponent\n"
+               "Tab: editor, Esc: quit\n");
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();
@@ -293,11 +315,18 @@ Result<void> runWindow(const DemoOptions& options)
         (*overlay)->begin();
         if (controls.panel)
             drawPanel(editor, controls, *show);
+        if (Result<void> done = controlSky(window, controls, *show->scene, options.assets, seconds);
+            !done)
+            return done;
         const float aspect = static_cast<float>(extent.width) / static_cast<float>(extent.height);
         const View view = viewOf(controls.camera, aspect);
         paint(*show->scene, view, cursorClip(window, controls),
               std::exchange(controls.paint, PaintKeys{}));
-        applyChanges(show->simulation->advance(controls.paused ? 0 : seconds), renderer.scene());
+        // Paused, the scene still follows what is edited.
+        if (Result<void> applied =
+                renderer.apply(show->simulation->advance(controls.paused ? 0 : seconds));
+            !applied)
+            return applied;
         Result<GpuFrame> frame = renderer.beginFrame(view, controls.kernel);
         if (!frame)
             return frame.error();

@@ -81,6 +81,23 @@ inline constexpr auto ecs::kFields<ShadowFieldEmitter> =
     ecs::fields(PENUMBRA_FIELD(ShadowFieldEmitter, asset, .kind = "light"),
                 PENUMBRA_FIELD(ShadowFieldEmitter, intensity, .min = 0, .max = 1e6));
 
+// Light from all around and far away: an environment map (`assetc environment`), shown behind the
+// scene. Several add up, so a cross-fade is two with intensities w and 1 - w; of more than two, the
+// two strongest are drawn, and all give light. Over solid ground (docs/decisions/0002) a turn about
+// y is free; what tilts the map is cut anew at the horizon, once per change
+// (systems/environment_lighting.h).  Written by: spawn, editor, animation.  Read by: gather.
+struct EnvironmentLight {
+    static constexpr std::string_view kName = "EnvironmentLight";
+    AssetHandle asset;
+    float intensity = 1;       // factor of the map's radiance, >= 0
+    vec4 rotation{0, 0, 0, 1}; // unit quaternion x, y, z, w: world from the map's axes
+};
+template <>
+inline constexpr auto ecs::kFields<EnvironmentLight> =
+    ecs::fields(PENUMBRA_FIELD(EnvironmentLight, asset, .kind = "environment"),
+                PENUMBRA_FIELD(EnvironmentLight, intensity, .min = 0, .max = 1e6),
+                PENUMBRA_FIELD(EnvironmentLight, rotation, .type = ecs::FieldType::rotation));
+
 // The entity moves as a rigid body of the physics world.  Written by: spawn.  Read by: physics.
 struct RigidBody {
     static constexpr std::string_view kName = "RigidBody";

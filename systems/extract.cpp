@@ -98,6 +98,13 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
             lightEntities.push_back(entity);
         });
     addIndices<RenderLight>(world, lightEntities);
+    world.query<const EnvironmentLight>().each(
+        [&](ecs::Entity entity, const EnvironmentLight& light) {
+            if (!assets.hasEnvironment(light.asset) && failed)
+                failed = Error{world.describe(entity) + ": its EnvironmentLight names no "
+                                                        "environment; compile one with assetc "
+                                                        "environment"};
+        });
     if (!failed)
         return failed.error();
     SceneData data = buildSceneData(assets.meshes(), std::move(instances), std::move(lights));
@@ -113,6 +120,7 @@ void SceneChanges::clear()
     lights.clear();
     materials.clear();
     intensities.clear();
+    relit = false;
 }
 
 void gatherChanged(const ecs::SystemContext& context, SceneChanges& out)
@@ -127,6 +135,16 @@ void gatherChanged(const ecs::SystemContext& context, SceneChanges& out)
         .each([&](const ShadowFieldEmitter& emitter, const RenderLight& light) {
             out.intensities.push_back({light.index, emitter.intensity});
         });
+
+    // They are few, and the frame needs their sum: all, if one changed, came or went.
+    const auto environments = context.query<const EnvironmentLight>();
+    out.relit |= out.environments.size() != environments.count();
+    context.query<ecs::Changed<EnvironmentLight>>().each([&](ecs::Entity) { out.relit = true; });
+    if (out.relit) {
+        out.environments.clear();
+        environments.each(
+            [&](const EnvironmentLight& light) { out.environments.push_back(light); });
+    }
 }
 
 void applyChanges(const SceneChanges& changes, GpuScene& scene)

@@ -24,8 +24,8 @@ struct RenderLight {
 
 // Gives every entity with Transform and MeshInstance an instance, and every one with Transform and
 // ShadowFieldEmitter a light, in the order of the queries, and packs the scene. Asset index = asset
-// handle. Error: an emitter's or occluder's asset has no field of the kind; the message names the
-// entity.
+// handle. Error: an emitter's or occluder's asset has no field of the kind, or an
+// EnvironmentLight's is no environment of the store; the message names the entity.
 Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets);
 
 // What changed since the systems' last run.
@@ -45,14 +45,18 @@ struct SceneChanges {
     std::vector<Moved> instances, lights;
     std::vector<Repainted> materials;
     std::vector<Dimmed> intensities;
+    // All of them, in the order of the query; kept from run to run. `relit`: they changed.
+    std::vector<EnvironmentLight> environments;
+    bool relit = false;
 
     void clear();
 };
 
-// System: reads Transform, Material, ShadowFieldEmitter, RenderInstance, RenderLight. Appends to
-// `out`.
+// System: reads Transform, Material, ShadowFieldEmitter, EnvironmentLight, RenderInstance,
+// RenderLight. Appends to `out`.
 void gatherChanged(const ecs::SystemContext& context, SceneChanges& out);
 
+// All but the environments, which EnvironmentLighting takes.
 void applyChanges(const SceneChanges& changes, GpuScene& scene);
 
 } // namespace penumbra

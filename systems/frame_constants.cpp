@@ -82,15 +82,27 @@ LightSh environmentLight(const Environment& environment, float intensity)
     return light;
 }
 
-Environment aboveGround(const Environment& environment)
+Environment aboveGround(const Environment& environment, vec3 up)
 {
+    const std::uint32_t width = environment.mapWidth, height = environment.mapHeight;
+    const double pixel = std::numbers::pi / height; // of a row, radians
+    const glm::dvec3 zenith = glm::normalize(glm::dvec3(up));
+    std::vector<double> along(width); // the part of `up` that lies flat in the map, by azimuth
+    for (std::uint32_t x = 0; x < width; ++x) {
+        const double azimuth = (2 * (x + 0.5) / width - 1) * std::numbers::pi;
+        along[x] = std::cos(azimuth) * zenith.x + std::sin(azimuth) * zenith.z;
+    }
     std::vector<vec3> map = environment.map;
-    const std::size_t firstBelow =
-        (environment.mapHeight + 1) / 2; // row whose centre looks below the horizon
-    std::fill(map.begin() + static_cast<std::ptrdiff_t>(firstBelow * environment.mapWidth),
-              map.end(), vec3(0));
-    Environment clipped =
-        makeEnvironment(environment.mapWidth, environment.mapHeight, std::move(map));
+    for (std::uint32_t y = 0; y < height; ++y) {
+        const double polar = (y + 0.5) * pixel;
+        const double upwards = std::cos(polar) * zenith.y, flat = std::sin(polar);
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const double elevation = std::asin(std::clamp(upwards + flat * along[x], -1.0, 1.0));
+            map[std::size_t{y} * width + x] *=
+                static_cast<float>(std::clamp(0.5 + elevation / pixel, 0.0, 1.0));
+        }
+    }
+    Environment clipped = makeEnvironment(width, height, std::move(map));
     clipped.statistics = environment.statistics;
     return clipped;
 }

@@ -21,13 +21,17 @@ LightSh environmentLight(const Environment& environment, float intensity);
 
 // The environment above solid, dark ground at y = 0: map and SH without the directions below the
 // horizon. The product of the ground's occlusion and the light is so computed once, exactly, for
-// all receivers above the plane.
-Environment aboveGround(const Environment& environment);
+// all receivers above the plane. `up`: the unit direction of the map that is the world's +y, so a
+// map that is rotated is cut first and rotated then; +y for all turns about y. A pixel that the
+// horizon crosses keeps the part above it. Takes some 20 ms for the largest map.
+Environment aboveGround(const Environment& environment, vec3 up = vec3(0, 1, 0));
 
 // Light that comes from d comes from `rotation` d afterwards.
 LightSh rotatedLight(const LightSh& light, const mat3& rotation);
 
-// All tests of kCullAll are on.
-FrameConstants frameConstants(const View& view, const LightSh& light, float backgroundIntensity);
+// All tests of kCullAll are on. `backgroundIntensity`: factor of what is drawn behind the scene
+// (GpuScene::setBackground).
+FrameConstants frameConstants(const View& view, const LightSh& light,
+                              float backgroundIntensity = 1);
 
 } // namespace penumbra

@@ -3,7 +3,6 @@
 #include "runtime/vk/transfer.h"
 
 #include <cstring>
-#include <glm/gtc/packing.hpp>
 
 namespace penumbra {
 
@@ -37,7 +36,8 @@ constexpr Binding kBindings[] = {
     {17, kStorage},
     {18, kStorage},
     {19, kStorage},
-    {20, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kFirstSkyBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kFirstSkyBinding + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
 };
 
 // Creates buffers until one fails, and remembers why.
@@ -105,25 +105,6 @@ std::vector<VkDrawIndexedIndirectCommand> drawTemplate(const SceneData& scene)
     return commands;
 }
 
-Result<Image> uploadMap(const Device& device, const Environment& environment)
-{
-    Result<Image> image =
-        createImage(device, {.name = "environment map",
-                             .extent = {environment.mapWidth, environment.mapHeight},
-                             .format = VK_FORMAT_R16G16B16A16_SFLOAT,
-                             .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
-    if (!image)
-        return image;
-    std::vector<std::uint64_t> pixels;
-    for (const vec3& radiance : environment.map)
-        pixels.push_back(glm::packHalf4x16(vec4(radiance, 1)));
-    if (Result<void> done = penumbra::upload(device, *image, std::as_bytes(std::span(pixels)),
-                                             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        !done)
-        return done.error();
-    return image;
-}
-
 } // namespace
 
 std::span<const Binding> sceneBindings()
@@ -131,8 +112,8 @@ std::span<const Binding> sceneBindings()
     return kBindings;
 }
 
-Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
-                                  const Environment& environment, std::uint32_t framesInFlight)
+Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const SkyMap& sky,
+                                  std::uint32_t framesInFlight)
 {
     PENUMBRA_ASSERT(!data.instances.empty() && !data.clusters.empty(),
                     "a scene has at least one instance");
@@ -198,11 +179,9 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
     if (!surfaces)
         return surfaces.error();
     scene.m_surfaces = std::move(*surfaces);
-    Result<Image> map = uploadMap(device, environment);
-    if (!map)
-        return map.error();
-    b.environmentMap = std::move(*map);
-    b.environmentSampler = createSampler(device, VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+    scene.m_skies = GpuSkies(device);
+    if (Result<void> set = scene.setBackground({&sky, sky.map != nullptr ? 1u : 0u}); !set)
+        return set.error();
 
     scene.m_layout = createSetLayout(device, sceneBindings());
     scene.m_sets = DescriptorSets(device);
@@ -229,8 +208,8 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data,
             .storageBuffer(17, b.denseRotations.handle)
             .storageBuffer(18, b.fieldSamples.handle)
             .storageBuffer(19, b.receivers.handle)
-            .sampledImage(20, b.environmentMap.view, b.environmentSampler)
             .write();
+        scene.m_skies.bind(slot.set, slot.skies);
     }
     scene.m_isChanged.assign(rows, false);
     scene.m_data = std::move(data);
@@ -268,10 +247,17 @@ void GpuScene::touchAll()
         touch(row);
 }
 
+Result<void> GpuScene::setBackground(std::span<const SkyMap> skies)
+{
+    return m_skies.set(skies);
+}
+
 void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constants)
 {
     GpuSceneSlot& slot = m_slots[slotIndex];
+    m_skies.bind(slot.set, slot.skies);
     FrameConstants frame = constants;
+    m_skies.fill(frame);
     frame.clusterCount = static_cast<std::uint32_t>(m_data.clusters.size());
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());

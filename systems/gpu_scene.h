@@ -3,11 +3,10 @@
 // changed.
 #pragma once
 
-#include "assets/environment.h"
 #include "runtime/vk/buffer.h"
 #include "runtime/vk/descriptors.h"
 #include "runtime/vk/device.h"
-#include "runtime/vk/image.h"
+#include "systems/gpu_skies.h"
 #include "systems/gpu_surfaces.h"
 #include "systems/scene_data.h"
 
@@ -23,8 +22,6 @@ struct GpuSceneBuffers {
     Buffer fields, instances, fieldSamples, receivers, indices, bounds, clusters;
     Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations;
     Buffer surfaceVertices; // none: all meshes are plain
-    Image environmentMap;
-    UniqueSampler environmentSampler;
 };
 
 // What the CPU writes for one frame in flight.
@@ -34,20 +31,27 @@ struct GpuSceneSlot {
     Buffer changed; // [rowCount] their indices
     std::uint32_t changedCount = 0;
     VkDescriptorSet set = VK_NULL_HANDLE;
+    GpuSkies::Views skies{}; // in `set`
 };
 
 class GpuScene {
 public:
-    // Uploads everything. Keeps `data` for the CPU paths. Error: out of memory, a scene larger than
-    // the device can bind or dispatch, or a texture that cannot be decoded.
-    static Result<GpuScene> create(const Device& device, SceneData data,
-                                   const Environment& environment, std::uint32_t framesInFlight);
+    // Uploads everything. Keeps `data` for the CPU paths. `sky` is drawn behind the scene; without
+    // a map, black. Error: out of memory, a scene larger than the device can bind or dispatch, or a
+    // texture that cannot be decoded.
+    static Result<GpuScene> create(const Device& device, SceneData data, const SkyMap& sky,
+                                   std::uint32_t framesInFlight);
 
     // The instance moves or changes its material from the next frame on; the light likewise.
     void setInstance(std::uint32_t index, const SceneInstance& instance);
     void setLight(std::uint32_t index, const SceneLight& light);
 
-    // Writes what the frame of `slot` reads: constants and changed rows.
+    // What is drawn behind the scene from the next frame on: the sum of the maps. See
+    // GpuSkies::set.
+    Result<void> setBackground(std::span<const SkyMap> skies);
+
+    // Writes what the frame of `slot` reads, which no frame in flight uses: constants, changed
+    // rows, the maps of the background.
     void writeFrame(std::uint32_t slot, const FrameConstants& constants);
 
     // All rows count as changed: after another kernel was chosen, which needs other constants.
@@ -69,6 +73,7 @@ private:
     std::vector<GpuSceneSlot> m_slots;
     std::vector<std::uint32_t> m_changed; // rows to upload, each once
     std::vector<bool> m_isChanged;
+    GpuSkies m_skies;
 };
 
 } // namespace penumbra

@@ -11,7 +11,8 @@ namespace penumbra {
 inline void registerSceneComponents()
 {
     ecs::registerComponents<ecs::Name, ecs::Parent, ecs::PrefabPart, Transform, MeshInstance,
-                            Material, ShadowFieldOccluder, ShadowFieldEmitter, RigidBody, Camera>();
+                            Material, ShadowFieldOccluder, ShadowFieldEmitter, EnvironmentLight,
+                            RigidBody, Camera>();
 }
 
 } // namespace penumbra

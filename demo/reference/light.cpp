@@ -43,7 +43,7 @@ void accumulate(std::span<const double> weights, float* start)
 
 } // namespace
 
-ReferenceLight::ReferenceLight(const mat3& worldFromEnvironment, float intensity)
+ReferenceLight::Part::Part(const mat3& worldFromEnvironment, float intensity)
     : m_worldFromEnvironment(worldFromEnvironment),
       m_environmentFromWorld(glm::transpose(worldFromEnvironment)), m_intensity(intensity)
 {
@@ -53,11 +53,11 @@ ReferenceLight::ReferenceLight(const mat3& worldFromEnvironment, float intensity
                         "worldFromEnvironment is no rotation");
 }
 
-ReferenceLight ReferenceLight::fromMap(const Environment& environment,
-                                       const mat3& worldFromEnvironment, float intensity)
+ReferenceLight::Part ReferenceLight::Part::fromMap(const Environment& environment,
+                                                   const mat3& rotation, float intensity)
 {
     PENUMBRA_ASSERT(!environment.map.empty(), "an environment without a map");
-    ReferenceLight light(worldFromEnvironment, intensity);
+    Part light(rotation, intensity);
     light.m_map = environment.map;
     std::vector<float> density;
     for (const vec3& c : environment.map)
@@ -66,10 +66,10 @@ ReferenceLight ReferenceLight::fromMap(const Environment& environment,
     return light;
 }
 
-ReferenceLight ReferenceLight::fromSh4(const std::array<vec3, 16>& sh4,
-                                       const mat3& worldFromEnvironment, float intensity)
+ReferenceLight::Part ReferenceLight::Part::fromSh4(const std::array<vec3, 16>& sh4,
+                                                   const mat3& rotation, float intensity)
 {
-    ReferenceLight light(worldFromEnvironment, intensity);
+    Part light(rotation, intensity);
     light.m_sh4 = sh4;
     std::vector<float> density;
     for (std::uint32_t i = 0; i < kSh4Width * kSh4Height; ++i) {
@@ -81,8 +81,8 @@ ReferenceLight ReferenceLight::fromSh4(const std::array<vec3, 16>& sh4,
     return light;
 }
 
-void ReferenceLight::buildDistribution(std::uint32_t width, std::uint32_t height,
-                                       std::vector<float> density)
+void ReferenceLight::Part::buildDistribution(std::uint32_t width, std::uint32_t height,
+                                             std::vector<float> density)
 {
     m_width = width;
     m_height = height;
@@ -107,7 +107,7 @@ void ReferenceLight::buildDistribution(std::uint32_t width, std::uint32_t height
     m_densityScale = integral > 0.0 ? static_cast<float>(1.0 / integral) : 0.0f;
 }
 
-vec3 ReferenceLight::sh4Radiance(vec3 environmentDirection) const
+vec3 ReferenceLight::Part::sh4Radiance(vec3 environmentDirection) const
 {
     const Sh4 basis = shBasis(environmentDirection);
     vec3 radiance(0);
@@ -116,7 +116,13 @@ vec3 ReferenceLight::sh4Radiance(vec3 environmentDirection) const
     return radiance;
 }
 
-ReferenceLight::Value ReferenceLight::valueAt(vec3 environmentDirection, std::size_t pixel) const
+double ReferenceLight::Part::power() const
+{
+    return m_densityScale > 0.0f ? static_cast<double>(m_intensity) / m_densityScale : 0.0;
+}
+
+ReferenceLight::Value ReferenceLight::Part::valueAt(vec3 environmentDirection,
+                                                    std::size_t pixel) const
 {
     if (m_map.empty())
         return {m_intensity * sh4Radiance(environmentDirection), m_density[pixel] * m_densityScale};
@@ -124,7 +130,7 @@ ReferenceLight::Value ReferenceLight::valueAt(vec3 environmentDirection, std::si
     return {m_intensity * radiance, luminance(radiance) * m_densityScale};
 }
 
-ReferenceLight::Value ReferenceLight::evaluate(vec3 direction) const
+ReferenceLight::Value ReferenceLight::Part::evaluate(vec3 direction) const
 {
     const vec3 local = m_environmentFromWorld * direction;
     const vec2 uv = equirectUv(local);
@@ -135,12 +141,12 @@ ReferenceLight::Value ReferenceLight::evaluate(vec3 direction) const
     return valueAt(local, std::size_t{y} * m_width + x);
 }
 
-ReferenceLight::Value ReferenceLight::evaluate(const Sample& sample) const
+ReferenceLight::Value ReferenceLight::Part::evaluate(vec3 direction, std::size_t pixel) const
 {
-    return valueAt(m_environmentFromWorld * sample.direction, sample.pixel);
+    return valueAt(m_environmentFromWorld * direction, pixel);
 }
 
-ReferenceLight::Sample ReferenceLight::sample(vec2 u) const
+ReferenceLight::Sample ReferenceLight::Part::sample(vec2 u) const
 {
     const Pick row = pick(m_rowStart.data(), m_height, u.y);
     const Pick column = pick(&m_columnStart[std::size_t{row.index} * (m_width + 1)], m_width, u.x);
@@ -152,7 +158,77 @@ ReferenceLight::Sample ReferenceLight::sample(vec2 u) const
         (static_cast<float>(column.index) + column.fraction) / static_cast<float>(m_width);
     const float azimuth = (2.0f * u01 - 1.0f) * kEnvironmentPi;
     const vec3 local(radius * cos(azimuth), y, radius * sin(azimuth));
-    return {m_worldFromEnvironment * local, pixel};
+    return {m_worldFromEnvironment * local, pixel, 0};
+}
+
+void ReferenceLight::add(Part part)
+{
+    if (part.power() > 0)
+        m_parts.push_back(std::move(part));
+    std::vector<double> powers;
+    for (const Part& p : m_parts)
+        powers.push_back(p.power());
+    m_partStart.resize(m_parts.size() + 1);
+    accumulate(powers, m_partStart.data());
+}
+
+ReferenceLight ReferenceLight::fromMap(const Environment& environment,
+                                       const mat3& worldFromEnvironment, float intensity)
+{
+    ReferenceLight light;
+    light.add(Part::fromMap(environment, worldFromEnvironment, intensity));
+    return light;
+}
+
+ReferenceLight ReferenceLight::fromSh4(const std::array<vec3, 16>& sh4,
+                                       const mat3& worldFromEnvironment, float intensity)
+{
+    ReferenceLight light;
+    light.add(Part::fromSh4(sh4, worldFromEnvironment, intensity));
+    return light;
+}
+
+ReferenceLight ReferenceLight::sum(std::span<const ReferenceLight> lights)
+{
+    ReferenceLight all;
+    for (const ReferenceLight& light : lights)
+        for (const Part& part : light.m_parts)
+            all.add(part);
+    return all;
+}
+
+// `sample`: of that direction, from one of the parts; null: none.
+ReferenceLight::Value ReferenceLight::mixed(vec3 direction, const Sample* sample) const
+{
+    Value value{vec3(0), 0};
+    for (std::size_t i = 0; i < m_parts.size(); ++i) {
+        const Value part = sample != nullptr && sample->part == i
+                               ? m_parts[i].evaluate(direction, sample->pixel)
+                               : m_parts[i].evaluate(direction);
+        value.radiance += part.radiance;
+        value.pdf += (m_partStart[i + 1] - m_partStart[i]) * part.pdf;
+    }
+    return value;
+}
+
+ReferenceLight::Value ReferenceLight::evaluate(vec3 direction) const
+{
+    return mixed(direction, nullptr);
+}
+
+ReferenceLight::Value ReferenceLight::evaluate(const Sample& sample) const
+{
+    return mixed(sample.direction, &sample);
+}
+
+ReferenceLight::Sample ReferenceLight::sample(vec2 u) const
+{
+    if (m_parts.size() == 1)
+        return m_parts.front().sample(u);
+    const Pick part = pick(m_partStart.data(), static_cast<std::uint32_t>(m_parts.size()), u.y);
+    Sample sample = m_parts[part.index].sample({u.x, part.fraction});
+    sample.part = part.index;
+    return sample;
 }
 
 } // namespace penumbra

@@ -1,24 +1,15 @@
 #include "demo/scenes/lights.h"
 
 #include "demo/orbit.h"
+#include "demo/scenes/objects.h"
 
-#include <algorithm>
 #include <glm/gtc/constants.hpp>
 
 namespace penumbra {
 
 namespace {
 
-struct Object {
-    const char* asset;
-    float size; // largest side of the bounding box, metres
-    vec2 place; // x, z on the floor, metres
-    float yaw;  // radians
-    vec3 albedo;
-    float glossFraction, glossExponent;
-};
-
-constexpr Object kObjects[] = {
+constexpr FloorObject kObjects[] = {
     {"teapot", 0.62f, {-0.62f, 0.18f}, 0.5f, {0.75f, 0.72f, 0.70f}, 0.4f, 4},
     {"knight", 0.55f, {0.62f, -0.10f}, 2.4f, {0.72f, 0.70f, 0.66f}, 0, 0},
     {"chess_pawn", 0.46f, {0.28f, 0.62f}, 0, {0.70f, 0.66f, 0.58f}, 0, 0},
@@ -29,32 +20,9 @@ constexpr Object kObjects[] = {
     {"bunny", 0.60f, {-0.75f, -0.70f}, 0.4f, {0.72f, 0.70f, 0.68f}, 0, 0},
 };
 
-Result<AssetHandle> load(DemoScene& scene, const SceneOptions& options, const std::string& name)
+Result<void> addKnot(DemoScene& scene, const SceneOptions& options)
 {
-    return scene.assets.loadMesh(options.assets / (name + ".glb"));
-}
-
-float scaleTo(const MeshAsset& mesh, float size)
-{
-    const vec3 extent = mesh.boundsMax - mesh.boundsMin;
-    return size / std::max({extent.x, extent.y, extent.z});
-}
-
-Result<void> placeObjects(DemoScene& scene, const SceneOptions& options)
-{
-    for (const Object& object : kObjects) {
-        Result<AssetHandle> asset = load(scene, options, object.asset);
-        if (!asset)
-            return asset.error();
-        const MeshAsset& mesh = scene.assets.mesh(*asset);
-        const float scale = scaleTo(mesh, object.size);
-        const vec3 position(object.place.x, -scale * mesh.boundsMin.y, object.place.y);
-        const vec4 rotation(0, std::sin(object.yaw / 2), 0, std::cos(object.yaw / 2));
-        scene.world.create(Transform{position, scale, rotation}, MeshInstance{*asset},
-                           ShadowFieldOccluder{*asset},
-                           Material{object.albedo, object.glossFraction, object.glossExponent});
-    }
-    Result<AssetHandle> knot = load(scene, options, "torus_knot"); // floats and turns
+    Result<AssetHandle> knot = loadMesh(scene, options, "torus_knot"); // floats and turns
     if (!knot)
         return knot.error();
     scene.world.create(Transform{.scale = scaleTo(scene.assets.mesh(*knot), 0.48f)},
@@ -70,8 +38,8 @@ const Material kMatte{vec3(0.5f), 0, 0};
 Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::string& light,
                       const std::string& solid, vec3 intensity, const Orbit& orbit)
 {
-    Result<AssetHandle> source = load(scene, options, light);
-    Result<AssetHandle> body = load(scene, options, solid);
+    Result<AssetHandle> source = loadMesh(scene, options, light);
+    Result<AssetHandle> body = loadMesh(scene, options, solid);
     if (!source || !body)
         return source ? body.error() : source.error();
     scene.world.create(orbitAt(orbit, Transform{}, 0), MeshInstance{*source},
@@ -84,11 +52,10 @@ Result<void> addLight(DemoScene& scene, const SceneOptions& options, const std::
 
 Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
 {
-    Result<std::unique_ptr<DemoScene>> made = makeFloorScene(options, "lights", "courtyard");
+    Result<std::unique_ptr<DemoScene>> made = makeFloorScene(options, "lights", "courtyard", 0.12f);
     if (!made)
         return made;
     std::unique_ptr<DemoScene> scene = std::move(*made);
-    scene->intensity = 0.12f;
     scene->exposure = 1.0f;
     scene->camera = {.target = vec3(0, 0.28f, 0),
                      .distance = 4.4f,
@@ -97,7 +64,9 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
                      .fieldOfView = 0.62f};
 
     constexpr float kHalfTurn = glm::pi<float>();
-    Result<void> done = placeObjects(*scene, options);
+    Result<void> done = placeObjects(*scene, options, kObjects);
+    if (done)
+        done = addKnot(*scene, options);
     if (done)
         done = addLight(*scene, options, "ball_lamp", "ball", vec3(10, 4.5f, 1.8f),
                         {.center = vec3(0, 0.62f, 0), .radius = 1.15f, .speed = 0.7f, .bob = 0.2f});
@@ -115,7 +84,7 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
                         .aim = 1};
     if (done)
         done = addLight(*scene, options, "picture_lamp", "panel", vec3(6), picture);
-    Result<AssetHandle> back = load(*scene, options, "panel"); // what is behind the picture
+    Result<AssetHandle> back = loadMesh(*scene, options, "panel"); // what is behind the picture
     if (!done || !back)
         return done ? back.error() : done.error();
     scene->world.create(orbitAt(picture, Transform{}, 0), MeshInstance{*back}, kMatte, picture);

@@ -93,6 +93,8 @@ PENUMBRA_CONST uint kCullBackfaces = 2u; // clusters that look away from the eye
 PENUMBRA_CONST uint kCullHorizon = 4u;   // entities under the horizon of a whole cluster
 PENUMBRA_CONST uint kCullAll = 7u;
 
+PENUMBRA_CONST uint kSkyMaps = 2u; // environment maps drawn at once, for a cross-fade
+
 // Header that passes cluster_cull and entity_sort fill for the passes after them.
 struct CullResult {
     uint sortGroups[3]; // VkDispatchIndirectCommand of entity_sort
@@ -110,14 +112,14 @@ struct FrameConstants {
     vec4 frustum[6];     // planes, normals inwards, world
     vec4 lightNodes[32]; // environment radiance at kShNodes times the node's weight; w unused
     vec4 light[16];      // environment radiance in SH
+    vec4 skyRotation[kSkyMaps]; // quaternion x, y, z, w: map from world
     uint clusterCount;
     uint instanceCount; // the rows of lights follow those of instances
     uint lightCount;
-    uint denseRotations; // 1: instance_update writes the matrices of kernel literal too
-    float backgroundIntensity;
-    uint culls; // kCull… bits
-    float padding0;
-    float padding1;
+    uint denseRotations;       // 1: instance_update writes the matrices of kernel literal too
+    float backgroundIntensity; // factor of both maps
+    uint culls;                // kCull… bits
+    float skyIntensity[kSkyMaps];
 };
 
 // A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
@@ -286,8 +288,8 @@ static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 1040 &&
-              offsetof(penumbra::FrameConstants, clusterCount) == 1008);
+static_assert(sizeof(penumbra::FrameConstants) == 1072 &&
+              offsetof(penumbra::FrameConstants, clusterCount) == 1040);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif
 #endif

@@ -92,12 +92,68 @@ TEST(SceneComponents, SceneOfPartsIsReadAndWrittenAsItWas)
     EXPECT_EQ((*saved).text, kScene);
 }
 
+// A cross-fade: two skies, one of them turned.
+TEST(SceneComponents, EnvironmentsAreReadAndWrittenAsTheyWere)
+{
+    constexpr const char* kSkies = R"({
+ "version": 1,
+ "entities": [
+  {
+   "EnvironmentLight": {
+    "asset": "courtyard.env",
+    "intensity": 0.25,
+    "rotation": [
+     0.0,
+     0.0,
+     0.0,
+     1.0
+    ]
+   }
+  },
+  {
+   "EnvironmentLight": {
+    "asset": "sunset.env",
+    "intensity": 0.75,
+    "rotation": [
+     0.0,
+     0.6,
+     0.0,
+     0.8
+    ]
+   }
+  }
+ ]
+}
+)";
+    registerSceneComponents();
+    ecs::World world;
+    ecs::Scene scene;
+    ecs::AssetNameList assets;
+    const auto loaded = ecs::loadScene(world, scene, kSkies, &assets);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_TRUE((*loaded).warnings.empty());
+    const auto& sunset = world.get<const EnvironmentLight>((*loaded).entities.at(1));
+    EXPECT_EQ(sunset.intensity, 0.75f);
+    EXPECT_EQ(sunset.rotation, vec4(0, 0.6f, 0, 0.8f));
+    EXPECT_NE(sunset.asset, world.get<const EnvironmentLight>((*loaded).entities.at(0)).asset);
+    const auto saved = ecs::saveScene(world, scene, &assets);
+    ASSERT_TRUE(saved) << saved.error().message;
+    EXPECT_EQ((*saved).text, kSkies);
+
+    for (const char* wrong :
+         {R"("intensity": -1)", R"("rotation": [0, 0, 0, 2])", R"("asset": 7)"}) {
+        const std::string text =
+            R"({"version": 1, "entities": [{"EnvironmentLight": {)" + std::string(wrong) + "}}]}";
+        EXPECT_FALSE(ecs::loadScene(world, scene, text, &assets)) << wrong;
+    }
+}
+
 TEST(SceneComponents, DefaultsAreValidAndAllAreDescribed)
 {
     registerSceneComponents();
     ecs::World world;
     world.create(ecs::Name("all"), Transform{}, MeshInstance{}, Material{}, ShadowFieldOccluder{},
-                 RigidBody{}, Camera{});
+                 EnvironmentLight{}, RigidBody{}, Camera{});
     ecs::Scene scene;
     const auto saved = ecs::saveScene(world, scene);
     ASSERT_TRUE(saved) << saved.error().message;

@@ -73,9 +73,11 @@ TEST(Layout, FrameConstants)
     EXPECT_SAME_OFFSET(frame, FrameConstants, frustum);
     EXPECT_SAME_OFFSET(frame, FrameConstants, lightNodes);
     EXPECT_SAME_OFFSET(frame, FrameConstants, light);
+    EXPECT_SAME_OFFSET(frame, FrameConstants, skyRotation);
     EXPECT_SAME_OFFSET(frame, FrameConstants, clusterCount);
     EXPECT_SAME_OFFSET(frame, FrameConstants, backgroundIntensity);
     EXPECT_SAME_OFFSET(frame, FrameConstants, culls);
+    EXPECT_SAME_OFFSET(frame, FrameConstants, skyIntensity);
 }
 
 } // namespace
