@@ -2,7 +2,7 @@
 #pragma once
 
 #include "assetc/file_type.h"
-#include "assetc/sheet/canvas.h"
+#include "runtime/canvas.h"
 #include "runtime/result.h"
 
 #include <filesystem>

@@ -2,6 +2,7 @@
 #include "demo/headless.h"
 #include "demo/options.h"
 #include "demo/scene.h"
+#include "demo/sweep/sweep_lights.h"
 #include "demo/window.h"
 #include "runtime/vk/instance.h"
 
@@ -32,6 +33,16 @@ int listDevicesTo(const Instance& instance)
     return 0;
 }
 
+Result<void> runOn(const Device& device, const DemoOptions& options)
+{
+    if (!options.sweep.empty())
+        return runSweepLights(device, {.assets = options.assets},
+                              options.out.empty() ? "out" : options.out);
+    Result<std::unique_ptr<DemoScene>> scene =
+        loadScene(options.scene, {options.assets, options.seed, options.environment});
+    return scene ? runHeadless(device, **scene, options) : scene.error();
+}
+
 int runWithoutWindow(const DemoOptions& options)
 {
     Result<Instance> instance =
@@ -43,11 +54,8 @@ int runWithoutWindow(const DemoOptions& options)
     Result<Device> device = createDevice(*instance, {.choice = options.device});
     if (!device)
         return report(device.error());
-    Result<std::unique_ptr<DemoScene>> scene =
-        loadScene(options.scene, {options.assets, options.seed, options.environment});
-    if (!scene)
-        return report(scene.error());
-    if (Result<void> done = runHeadless(*device, **scene, options); !done)
+    const Result<void> done = runOn(*device, options);
+    if (!done)
         return report(done.error());
     if (instance->validationCount() > 0)
         return report(

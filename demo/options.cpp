@@ -32,7 +32,8 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     std::string size = "1280x720", kernel = "exact", receivers = "vertex";
     std::uint32_t reference = 1024;
     options.assets = defaultAssets();
-    app.add_option("--scene", options.scene, "scene to show")->capture_default_str();
+    CLI::Option* sceneOption =
+        app.add_option("--scene", options.scene, "scene to show")->capture_default_str();
     app.add_option("--environment", options.environment,
                    "name of a .env of the assets to light the scene with");
     app.add_flag("--list-scenes", options.listScenes, "list the scenes and stop");
@@ -42,7 +43,7 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     app.add_flag("--headless", options.headless,
                  "no window: render to files at 60 frames per second of scene time");
     CLI::Option* outOption =
-        app.add_option("--out", options.out, "folder for PNG files and reference.json");
+        app.add_option("--out", options.out, "folder for PNG files, reference.json and the sweep");
     CLI::Option* recordOption =
         app.add_option("--record", options.record, "write a film, .mp4")
             ->check(CLI::Validator(
@@ -63,6 +64,11 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     CLI::Option* compareOption =
         app.add_option("--compare-kernels", options.compareKernels,
                        "time all kernels on the same frames, write JSON; a run of its own");
+    CLI::Option* sweepOption =
+        app.add_option("--sweep", options.sweep,
+                       "error and time of fields and shadow rays over the size of the light, as "
+                       "CSV and PNG in --out; a run of its own with a scene of its own")
+            ->check(CLI::IsMember({"lights"}));
     app.add_option("--receivers", receivers, "what receives light")
         ->capture_default_str()
         ->check(CLI::IsMember({"vertex"}));
@@ -83,6 +89,13 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
             if (compareOption->count() > 0 && other->count() > 0)
                 throw CLI::ValidationError("--compare-kernels",
                                            "is a run of its own: leave out " + other->get_name());
+        for (const CLI::Option* other : {sceneOption, recordOption, benchmarkOption,
+                                         referenceOption, kernelOption, compareOption})
+            if (sweepOption->count() > 0 && other->count() > 0)
+                throw CLI::ValidationError("--sweep",
+                                           "is a run of its own: leave out " + other->get_name());
+        if (sweepOption->count() > 0 && options.device == "cpu-scalar")
+            throw CLI::ValidationError("--sweep", "compares kernels on a device, not cpu-scalar");
         if (reference < 16 || reference > 65536)
             throw CLI::ValidationError("--reference", "directions per receiver: 16 to 65536");
     } catch (const CLI::ParseError& error) {
@@ -98,7 +111,7 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     // Files that are made of whole runs need no window.
     const bool filesOnly = !options.out.empty() || !options.record.empty() ||
                            !options.benchmark.empty() || !options.compareKernels.empty() ||
-                           options.reference || options.cpuScalar;
+                           options.reference || !options.sweep.empty() || options.cpuScalar;
     options.headless = options.headless || filesOnly;
     if (options.headless && options.frames == 0)
         options.frames = 240;

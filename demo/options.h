@@ -18,6 +18,7 @@ struct DemoOptions {
     bool headless = false;
     std::filesystem::path out, record, benchmark, compareKernels, assets;
     std::optional<std::uint32_t> reference; // directions per receiver
+    std::string sweep;                      // lights, empty: none
     Kernel kernel = Kernel::Exact;
     std::string device; // name, index, empty: the best
     bool cpuScalar = false;

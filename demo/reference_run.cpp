@@ -1,7 +1,9 @@
 #include "demo/reference_run.h"
 
-#include "demo/cpu_scalar.h"
+#include "demo/causes/field_chain.h"
+#include "demo/causes/vertex_interpolation.h"
 #include "demo/image/flip.h"
+#include "demo/reference_frames.h"
 #include "demo/surface_picture.h"
 #include "demo/traced_scene.h"
 #include "demo/traced_sky.h"
@@ -27,73 +29,34 @@ Image8 displayImage(std::span<const vec3> radiance, VkExtent2D extent, float exp
     return image;
 }
 
-// Draws the frame with the radiance that the options ask for, and returns that.
-Result<std::vector<vec4>> drawFields(Renderer& renderer, const View& view,
-                                     const ReferenceRunOptions& options)
-{
-    if (options.cpuScalar) {
-        const CpuFrame cpu =
-            combineOnCpu(Kernel::Literal, renderer.scene().data(), renderer.constants(view));
-        if (Result<void> set = renderer.setRadiance(cpu.radiance); !set)
-            return set.error();
-    }
-    if (Result<void> drawn = renderer.drawFrame(view, options.kernel, !options.cpuScalar); !drawn)
-        return drawn.error();
-    return renderer.radiance();
-}
-
-// The same under the environment alone.
-Result<std::vector<vec4>> drawWithoutLights(Renderer& renderer, const View& view,
-                                            const ReferenceRunOptions& options)
-{
-    const std::vector<SceneLight> lights = renderer.scene().data().lights;
-    for (std::uint32_t l = 0; l < lights.size(); ++l) {
-        SceneLight off = lights[l];
-        off.intensity = vec3(0);
-        renderer.scene().setLight(l, off);
-    }
-    Result<std::vector<vec4>> radiance = drawFields(renderer, view, options);
-    for (std::uint32_t l = 0; l < lights.size(); ++l)
-        renderer.scene().setLight(l, lights[l]);
-    return radiance;
-}
-
-std::vector<vec3> sum(std::span<const vec3> a, std::span<const vec3> b, float factor = 1)
-{
-    std::vector<vec3> result(a.begin(), a.end());
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] += factor * b[i];
-    return result;
-}
-
-nlohmann::ordered_json relative(const RadianceErrors& errors)
-{
-    return {{"meanUnshadowed", errors.meanUnshadowed},
-            {"rmseRelative", errors.rmseRelative},
-            {"biasRelative", errors.meanUnshadowed > 0 ? errors.bias / errors.meanUnshadowed : 0}};
-}
-
 // What the receivers show against what they should.
 struct Figures {
     RadianceErrors errors;
     double lightBandLimit = 0, fieldsAndProducts = 0; // rmse of the cause over the mean unshadowed
     nlohmann::ordered_json byLight;                   // null without local lights
+    std::vector<LightErrors> lights;
     std::vector<float> perReceiver;
     double seconds = 0;
 };
 
 // `test` under all lights, `testSky` under the environment alone; equal where there is no other.
 Figures measure(const TracedScene& traced, const DemoScene& scene, const Receivers& receivers,
-                std::span<const vec3> test, std::span<const vec3> testSky, std::uint32_t samples)
+                std::span<const vec3> test, std::span<const vec3> testSky,
+                std::vector<LightErrors> lights, std::uint32_t samples)
 {
     const TracedSky skies = tracedSky(scene);
-    const auto trace = [&](const ReferenceLight& sky, std::span<const AreaLight> lights) {
-        return shadeReference(traced.scene, {sky, lights}, receivers.receivers,
-                              {.samples = samples});
+    const auto trace = [&](const ReferenceLight& sky) {
+        return shadeReference(traced.scene, sky, receivers.receivers, {.samples = samples});
     };
-    const ReferenceRadiance sky = trace(skies.maps, {});
-    const ReferenceRadiance sky4 = trace(skies.order4, {});
-    const ReferenceRadiance local = trace(ReferenceLight::sum({}), traced.lights);
+    const ReferenceRadiance sky = trace(skies.maps);
+    const ReferenceRadiance sky4 = trace(skies.order4);
+    ReferenceRadiance local;
+    local.shadowed = local.unshadowed = std::vector<vec3>(test.size(), vec3(0));
+    for (const LightErrors& light : lights) {
+        local.shadowed = sum(local.shadowed, light.truth.shadowed);
+        local.unshadowed = sum(local.unshadowed, light.truth.unshadowed);
+        local.seconds += light.truth.seconds;
+    }
 
     Figures figures;
     const std::vector<vec3> shadowed = sum(sky.shadowed, local.shadowed);
@@ -104,14 +67,24 @@ Figures measure(const TracedScene& traced, const DemoScene& scene, const Receive
     figures.fieldsAndProducts =
         compareRadiance(testSky, sky4.shadowed, sky4.unshadowed).rmse / mean;
     if (!traced.lights.empty()) {
-        figures.byLight["environment"] =
-            relative(compareRadiance(testSky, sky.shadowed, sky.unshadowed));
-        figures.byLight["local"] =
-            relative(compareRadiance(sum(test, testSky, -1), local.shadowed, local.unshadowed));
+        figures.byLight = byLightJson(
+            compareRadiance(testSky, sky.shadowed, sky.unshadowed),
+            compareRadiance(sum(test, testSky, -1), local.shadowed, local.unshadowed), lights);
     }
     figures.perReceiver = errorPerReceiver(test, shadowed);
     figures.seconds = sky.seconds + local.seconds;
+    figures.lights = std::move(lights);
     return figures;
+}
+
+double interpolationError(const TracedScene& traced, const DemoScene& scene,
+                          const ReferenceCamera& camera, std::uint32_t samples)
+{
+    constexpr std::uint32_t kPoints = 2048;
+    const ReferenceLight sky = tracedSky(scene).maps;
+    return vertexInterpolation(traced.scene, {sky, traced.lights}, camera, kPoints,
+                               {.samples = samples})
+        .rmseRelative;
 }
 
 // What the camera sees, traced per pixel, which no vertex interpolation touches; over the
@@ -121,14 +94,17 @@ struct TracedPicture {
     double seconds = 0;
 };
 
-TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, const View& view,
-                           const Image8& fields, const SurfacePicture& surfaces,
-                           std::uint32_t samples)
+ReferenceCamera cameraOf(const View& view, const Image8& picture)
 {
     mat4 flipY(1);
     flipY[1][1] = -1; // our clip space has +Y up; the viewport flips it
-    const ReferenceCamera camera{glm::inverse(flipY * view.clipFromWorld), view.eye, fields.width,
-                                 fields.height};
+    return {glm::inverse(flipY * view.clipFromWorld), view.eye, picture.width, picture.height};
+}
+
+TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene,
+                           const ReferenceCamera& camera, const Image8& fields,
+                           const SurfacePicture& surfaces, std::uint32_t samples)
+{
     const ReferenceLight sky = tracedSky(scene).maps;
     // A pixel needs fewer samples than a figure: its noise is below what 8 bits of a mid grey show.
     ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
@@ -144,22 +120,21 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene, co
     return out;
 }
 
-// The error of each receiver as brightness; white: a quarter of the mean unshadowed radiance.
-Result<Image8> drawErrors(Renderer& renderer, const View& view, const Receivers& receivers,
-                          const Figures& figures, float exposure)
+// byCause of reference.json, relative to `mean`; what each means: docs/reference.md.
+Result<nlohmann::ordered_json> byCause(const FieldChainInput& chain, const Figures& figures,
+                                       double vertexInterpolation)
 {
-    std::vector<vec4> radiance(renderer.scene().data().radianceCount, vec4(0, 0, 0, 1));
-    const float scale = 4 / (static_cast<float>(figures.errors.meanUnshadowed) * exposure);
-    for (std::size_t i = 0; i < figures.perReceiver.size(); ++i)
-        radiance[receivers.radianceIndex[i]] = vec4(vec3(figures.perReceiver[i] * scale), 1);
-    if (Result<void> set = renderer.setRadiance(radiance); !set)
-        return set.error();
-    renderer.showSurfaces(false);
-    const Result<void> drawn = renderer.drawFrame(view, Kernel::Exact, false);
-    renderer.showSurfaces(true);
-    if (!drawn)
-        return drawn.error();
-    return renderer.capture();
+    const Result<FieldChain> traced = traceFieldChain(chain);
+    if (!traced)
+        return traced.error();
+    const std::vector<vec3> none(traced->steps[0].size(), vec3(0));
+    nlohmann::ordered_json json{{"lightBandLimit", figures.lightBandLimit},
+                                {"fieldsAndProducts", figures.fieldsAndProducts}};
+    for (std::size_t c = 0; c < kFieldCauses.size(); ++c)
+        json[kFieldCauses[c]] = compareRadiance(traced->steps[c + 1], traced->steps[c], none).rmse /
+                                figures.errors.meanUnshadowed;
+    json["vertexInterpolation"] = vertexInterpolation;
+    return json;
 }
 
 } // namespace
@@ -178,7 +153,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     // Light adds up: the frame without local lights says what the environment gives.
     const Result<std::vector<vec4>> skyOnly = data.lights.empty()
                                                   ? Result<std::vector<vec4>>(std::vector<vec4>())
-                                                  : drawWithoutLights(renderer, view, options);
+                                                  : drawWithLight(renderer, view, options, {});
     if (!skyOnly)
         return skyOnly.error();
     const auto start = Clock::now();
@@ -190,19 +165,32 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     if (!fields)
         return fields.error();
 
-    const Figures figures = measure(
-        *traced, scene, receivers, atReceivers(*radiance, receivers),
-        atReceivers(data.lights.empty() ? *radiance : *skyOnly, receivers), options.samples);
+    const std::vector<vec4>& skyRadiance = data.lights.empty() ? *radiance : *skyOnly;
+    const std::vector<vec3> testSky = atReceivers(skyRadiance, receivers);
+    Result<std::vector<LightErrors>> lights =
+        measureLights(renderer, scene, view, *traced, receivers, testSky, options);
+    if (!lights)
+        return lights.error();
+    const Figures figures = measure(*traced, scene, receivers, atReceivers(*radiance, receivers),
+                                    testSky, std::move(*lights), options.samples);
     const RadianceErrors& errors = figures.errors;
     const Result<SurfacePicture> surfaces = drawSurfaces(renderer, view);
     if (!surfaces)
         return surfaces.error();
+    const ReferenceCamera camera = cameraOf(view, *fields);
     const TracedPicture picture =
-        tracePicture(*traced, scene, view, *fields, *surfaces, options.samples);
-    const Result<Image8> errorImage =
-        drawErrors(renderer, view, receivers, figures, scene.exposure);
+        tracePicture(*traced, scene, camera, *fields, *surfaces, options.samples);
+    const Result<Image8> errorImage = drawErrors(renderer, view, receivers, figures.perReceiver,
+                                                 errors.meanUnshadowed / 4, scene.exposure);
     if (!errorImage)
         return errorImage.error();
+    const Kernel kernel = options.cpuScalar ? Kernel::Literal : options.kernel;
+    const Result<nlohmann::ordered_json> causes =
+        byCause({data, rows, scene.assets.meshes(), traced->scene, renderer.constants(view), kernel,
+                 skyRadiance, 512, options.samples},
+                figures, interpolationError(*traced, scene, camera, options.samples));
+    if (!causes)
+        return causes.error();
     const FlipResult flipped = flipMap(picture.image, *fields);
 
     nlohmann::ordered_json json{
@@ -216,15 +204,16 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         {"bias", errors.bias},
         {"maxAbs", errors.maxAbs},
         {"flip", flipped.mean},
-        {"byCause",
-         {{"lightBandLimit", figures.lightBandLimit},
-          {"fieldsAndProducts", figures.fieldsAndProducts}}},
+        {"byCause", *causes},
         {"referenceSeconds", figures.seconds},
         {"pictureSeconds", picture.seconds},
         {"fieldSeconds", fieldSeconds}};
     if (!figures.byLight.is_null())
         json["byLight"] = figures.byLight;
     Result<void> done = writeFile(options.out / "reference.json", json.dump(2) + "\n");
+    if (done)
+        done = writeLightErrors(renderer, view, receivers, figures.lights, scene.exposure,
+                                options.out);
     for (const auto& [name, image] :
          {std::pair{"fields.png", *fields},
           {"reference.png", picture.image},

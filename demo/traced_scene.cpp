@@ -2,15 +2,11 @@
 
 namespace penumbra {
 
-namespace {
-
 mat4 worldFromObject(const GpuInstance& g)
 {
     return glm::transpose(
         mat4(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec4(0, 0, 0, 1)));
 }
-
-} // namespace
 
 Result<TracedScene> traceable(const SceneData& data, const CpuInstances& rows,
                               std::span<const MeshAsset* const> meshes)

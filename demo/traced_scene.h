@@ -6,6 +6,8 @@
 
 namespace penumbra {
 
+mat4 worldFromObject(const GpuInstance& row);
+
 // The scene as rays see it: its instances, then the surfaces of lights that have none.
 struct TracedScene {
     ReferenceScene scene;

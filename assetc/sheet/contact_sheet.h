@@ -1,9 +1,9 @@
 // What is in a compiled asset, on one picture, for a person to look at.
 #pragma once
 
-#include "assetc/sheet/canvas.h"
 #include "assets/environment.h"
 #include "assets/mesh_asset.h"
+#include "runtime/canvas.h"
 
 #include <string>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "assetc/embree_scene.h"
-#include "assetc/sheet/canvas.h"
 #include "assets/mesh_asset.h"
+#include "runtime/canvas.h"
 
 namespace penumbra {
 

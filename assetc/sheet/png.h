@@ -1,6 +1,6 @@
 #pragma once
 
-#include "assetc/sheet/canvas.h"
+#include "runtime/canvas.h"
 
 #include <cstddef>
 

@@ -1,7 +1,7 @@
 // Colours and distances that all contact sheets share.
 #pragma once
 
-#include "assetc/sheet/canvas.h"
+#include "runtime/canvas.h"
 
 namespace penumbra {
 

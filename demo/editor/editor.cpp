@@ -3,6 +3,7 @@
 #include "demo/editor/field_widget.h"
 #include "runtime/ecs/reflection.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 #include <vector>
 
@@ -10,9 +11,12 @@ namespace penumbra {
 
 namespace {
 
-std::string assetName(const AssetStore& assets, std::uint32_t handle)
+std::string assetName(const AssetStore& assets, const ecs::Field& field, std::uint32_t handle)
 {
-    return handle == AssetHandle{}.index ? "none" : assets.mesh({handle}).name;
+    if (handle == AssetHandle{}.index)
+        return "none";
+    return field.kind == "environment" ? fmt::format("environment {}", handle)
+                                       : assets.mesh({handle}).name;
 }
 
 // Its id, its name, and the first asset that its components name.
@@ -25,7 +29,7 @@ std::string listed(const ecs::World& world, const AssetStore& assets, ecs::Entit
             if (!found && field.type == ecs::FieldType::asset) {
                 std::uint32_t handle = 0;
                 ecs::readField(world, entity, id, field, &handle);
-                text += "  " + assetName(assets, handle);
+                text += "  " + assetName(assets, field, handle);
                 found = true;
             }
     });
@@ -70,8 +74,9 @@ void Editor::drawList(ecs::World& world, const AssetStore& assets)
 
 void Editor::drawComponents(ecs::World& world, const AssetStore& assets) const
 {
-    const FieldNames names{
-        world, [&](const ecs::Field&, std::uint32_t handle) { return assetName(assets, handle); }};
+    const FieldNames names{world, [&](const ecs::Field& field, std::uint32_t handle) {
+                               return assetName(assets, field, handle);
+                           }};
     ImGui::PushItemWidth(0.55f * ImGui::GetContentRegionAvail().x);
     world.components(m_selected).forEach([&](ecs::ComponentId id) {
         const ecs::ComponentInfo& info = ecs::componentInfo(id);

@@ -1,24 +1,18 @@
 #include "demo/reference/reference.h"
 
 #include "demo/reference/sampling.h"
+#include "demo/reference/shade_all.h"
 
 #include <bit>
-#include <chrono>
 #include <limits>
-#include <numeric>
-#include <tbb/parallel_for.h>
 
 namespace penumbra {
 
 namespace {
 
-constexpr std::size_t kGrain = 16; // receivers per task: some milliseconds
-constexpr float kShort = 1e-4f;    // a ray to a light ends this part before its surface
+constexpr float kShort = 1e-4f; // a ray to a light ends this part before its surface
 
-struct Point {
-    glm::dvec3 shadowed{0}, unshadowed{0};
-    std::uint64_t rays = 0;
-};
+using Point = ReferencePoint;
 
 class Integrator {
 public:
@@ -140,45 +134,6 @@ private:
     std::vector<glm::uvec2> m_points; // one half of the samples; the other half has other shifts
 };
 
-// Calls shadeOne(i) -> Point for all i < count in parallel and fills the arrays.
-template <class F>
-ReferenceRadiance shadeAll(std::size_t count, const F& shadeOne)
-{
-    const auto start = std::chrono::steady_clock::now();
-    ReferenceRadiance result;
-    result.shadowed.resize(count);
-    result.unshadowed.resize(count);
-    std::vector<std::uint64_t> rays((count + kGrain - 1) / kGrain);
-    tbb::parallel_for(std::size_t{0}, rays.size(), [&](std::size_t block) {
-        for (std::size_t i = block * kGrain; i < std::min(count, (block + 1) * kGrain); ++i) {
-            const Point point = shadeOne(i);
-            result.shadowed[i] = vec3(point.shadowed);
-            result.unshadowed[i] = vec3(point.unshadowed);
-            rays[block] += point.rays;
-        }
-    });
-    result.rays = std::accumulate(rays.begin(), rays.end(), std::uint64_t{0});
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return result;
-}
-
-float offsetOf(const ReferenceScene& scene, std::uint32_t instance, const ReferenceOptions& options)
-{
-    if (instance == kNoInstance)
-        return 0.0f;
-    return min(options.offset * scene.instanceRadius(instance), options.maxOffset);
-}
-
-vec3 pixelDirection(const ReferenceCamera& camera, std::size_t pixel)
-{
-    const vec2 size(camera.width, camera.height);
-    const vec2 ndc = 2.0f * (vec2(pixel % camera.width, pixel / camera.width) + 0.5f) / size - 1.0f;
-    const vec4 middle =
-        camera.worldFromClip * vec4(ndc, 0.5f, 1.0f); // finite for both directions of depth
-    return normalize(vec3(middle) / middle.w - camera.eye);
-}
-
 } // namespace
 
 ReferenceRadiance shadeReference(const ReferenceScene& scene, const ReferenceLighting& lighting,
@@ -191,8 +146,18 @@ ReferenceRadiance shadeReference(const ReferenceScene& scene, const ReferenceLig
     const Integrator integrator(scene, lighting, options);
     return shadeAll(receivers.size(), [&](std::size_t i) {
         const ReferenceReceiver& r = receivers[i];
-        return integrator.shade(r.position + offsetOf(scene, r.instance, options) * r.normal, r, i);
+        return integrator.shade(r.position + rayOffset(scene, r.instance, options) * r.normal, r,
+                                i);
     });
+}
+
+vec3 pixelDirection(const ReferenceCamera& camera, std::size_t pixel)
+{
+    const vec2 size(camera.width, camera.height);
+    const vec2 ndc = 2.0f * (vec2(pixel % camera.width, pixel / camera.width) + 0.5f) / size - 1.0f;
+    const vec4 middle =
+        camera.worldFromClip * vec4(ndc, 0.5f, 1.0f); // finite for both directions of depth
+    return normalize(vec3(middle) / middle.w - camera.eye);
 }
 
 ReferencePicture renderReference(const ReferenceScene& scene, const ReferenceLighting& lighting,
@@ -213,7 +178,7 @@ ReferencePicture renderReference(const ReferenceScene& scene, const ReferenceLig
         picture.instance[i] = hit.instance;
         const ReferenceReceiver receiver{hit.position, hit.normal, -direction,
                                          scene.instances()[hit.instance].material, hit.instance};
-        const float distance = offsetOf(scene, hit.instance, options);
+        const float distance = rayOffset(scene, hit.instance, options);
         Point point = integrator.shade(hit.position + distance * hit.faceNormal, receiver, i);
         for (const AreaLight& light : lighting.lights)
             if (light.instance() == hit.instance) {

@@ -73,6 +73,9 @@ struct ReferenceCamera {
     std::uint32_t width = 0, height = 0;
 };
 
+// From the eye through the middle of pixel `index`, row by row from the top; unit.
+vec3 pixelDirection(const ReferenceCamera& camera, std::size_t index);
+
 struct ReferencePicture {
     ReferenceRadiance
         radiance; // [height * width] row 0 the top; background pixels hold the light's radiance

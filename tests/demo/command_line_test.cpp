@@ -1,11 +1,13 @@
 // The demo's command line: exit codes, one clear message, and what a short run leaves behind. The
 // scene's assets are those that the build compiles.
+#include "demo/image/image.h"
 #include "demo/options.h"
 #include "tests/support/program.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace penumbra {
 
@@ -35,7 +37,12 @@ TEST_F(DemoCommandLine, WrongUsageIsTwo)
           std::string("--reference 3"), std::string("--what"), std::string("falling"),
           "--compare-kernels " + at("k.json") + " --reference",
           "--compare-kernels " + at("k.json") + " --out " + at("o"),
-          "--compare-kernels " + at("k.json") + " --kernel exact"}) {
+          "--compare-kernels " + at("k.json") + " --kernel exact", std::string("--sweep shadows"),
+          std::string("--sweep"), std::string("--sweep lights --reference"),
+          std::string("--sweep lights --scene lights"),
+          std::string("--sweep lights --kernel exact"),
+          std::string("--sweep lights --device cpu-scalar"),
+          "--sweep lights --compare-kernels " + at("k.json")}) {
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
         EXPECT_FALSE(outcome.err.empty()) << arguments;
@@ -43,6 +50,12 @@ TEST_F(DemoCommandLine, WrongUsageIsTwo)
     EXPECT_FALSE(std::filesystem::exists(folder / "k.json"));
     EXPECT_EQ(run("--help").code, 0);
     EXPECT_NE(run("--list-scenes").out.find("falling"), std::string::npos);
+    const std::string help = run("--help").out;
+    EXPECT_NE(help.find("--sweep"), std::string::npos);
+    // The message names what there is.
+    const Outcome unknown = run("--sweep shadows");
+    EXPECT_NE(unknown.err.find("lights"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("shadows"), std::string::npos) << unknown.err;
 }
 
 TEST_F(DemoCommandLine, BadInputIsOne)
@@ -76,6 +89,18 @@ TEST(DemoOptions, ReferenceNeedsNoNumber)
     EXPECT_EQ(samplesOf({}), 0u);
 }
 
+// A sweep needs no window, and takes the folder of --out.
+TEST(DemoOptions, SweepIsHeadless)
+{
+    std::vector<const char*> words{"penumbra-demo", "--sweep", "lights", "--out", "there"};
+    DemoOptions options;
+    EXPECT_FALSE(
+        parseOptions(static_cast<int>(words.size()), const_cast<char**>(words.data()), options));
+    EXPECT_EQ(options.sweep, "lights");
+    EXPECT_EQ(options.out, "there");
+    EXPECT_TRUE(options.headless);
+}
+
 // The scalar path is compared as it is, not redrawn by the device.
 TEST_F(DemoCommandLine, ReferenceOfTheScalarPathIsKernelLiteral)
 {
@@ -90,8 +115,54 @@ TEST_F(DemoCommandLine, ReferenceOfTheScalarPathIsKernelLiteral)
     const auto exact = errorOf("--kernel=exact");
     EXPECT_EQ(scalar["kernel"], "cpu-scalar");
     const double a = scalar["rmse"], b = literal["rmse"], c = exact["rmse"];
+    // Literal has no use for what order 4 of the light leaves out.
+    EXPECT_LT(literal["byCause"]["lightBeyondOrder4"], 1e-9);
+    EXPECT_GT(exact["byCause"]["lightBeyondOrder4"], 1e-9);
     EXPECT_NEAR(a, b, 1e-4 * b);
     EXPECT_GT(std::abs(a - c), 1e-3 * c);
+}
+
+// Every part of the error, and a picture per local light.
+TEST_F(DemoCommandLine, ReferenceNamesCausesAndLights)
+{
+    const Outcome outcome =
+        run("--scene lights --frames 1 --size 96x64 --reference 64 --out " + at("lit"));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(readText(folder / "lit" / "reference.json"));
+    double sum = 0;
+    for (const char* cause : {"occluderBandLimit", "productTruncation", "fieldSampling",
+                              "quantisation", "lightBeyondOrder4", "storedFields"}) {
+        ASSERT_TRUE(json["byCause"].contains(cause)) << cause;
+        sum += json["byCause"][cause].get<double>();
+    }
+    // The causes add up receiver by receiver, so their rmse can only sum to more than the whole;
+    // the whole is of all receivers, the causes of some.
+    EXPECT_GT(sum, 0.7 * json["byCause"]["fieldsAndProducts"].get<double>());
+    EXPECT_LT(sum, 4 * json["byCause"]["fieldsAndProducts"].get<double>());
+    EXPECT_GT(json["byCause"]["vertexInterpolation"], 0);
+    EXPECT_LT(json["byCause"]["vertexInterpolation"], 0.2);
+
+    const auto& lights = json["byLight"]["lights"];
+    ASSERT_EQ(lights.size(), 3u);
+    EXPECT_EQ(lights[0]["asset"], "ball_lamp");
+    EXPECT_EQ(lights[2]["asset"], "picture_lamp");
+    EXPECT_EQ(json["byLight"]["byAsset"].size(), 2u);
+    double mean = 0;
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        for (const char* member :
+             {"meanUnshadowed", "rmse", "rmseRelative", "bias", "biasRelative", "maxAbs"})
+            EXPECT_TRUE(lights[l][member].is_number()) << l << member;
+        for (const char* cause : {"lightBandLimit", "fieldsAndProducts"})
+            EXPECT_GT(lights[l]["byCause"][cause], 0) << l;
+        mean += lights[l]["meanUnshadowed"].get<double>();
+        const Result<Image8> map = readPng(folder / "lit" / fmt::format("error_light_{}.png", l));
+        ASSERT_TRUE(map) << map.error().message;
+        EXPECT_EQ(map->width, 96u);
+        EXPECT_EQ(map->height, 64u);
+        EXPECT_GT(std::set(map->rgba.begin(), map->rgba.end()).size(), 10u); // something to see
+    }
+    // Lights add up.
+    EXPECT_NEAR(json["byLight"]["local"]["meanUnshadowed"].get<double>(), mean, 1e-5 * mean);
 }
 
 } // namespace penumbra

@@ -1,4 +1,4 @@
-#include "assetc/sheet/canvas.h"
+#include "runtime/canvas.h"
 
 #include <algorithm>
 #include <cmath>

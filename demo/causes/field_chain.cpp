@@ -1,0 +1,243 @@
+#include "demo/causes/field_chain.h"
+
+#include "demo/causes/point_visibility.h"
+#include "demo/reference/shade_all.h"
+#include "demo/traced_scene.h"
+#include "shaders/shared/visibility.h"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+
+namespace penumbra {
+
+namespace {
+
+constexpr std::uint32_t kPerCluster = 8; // receivers taken of a cluster, evenly
+
+struct ChainReceiver {
+    const ClusterEntities* cluster;
+    std::uint32_t instance, index, radianceIndex; // index: of its texels
+};
+
+std::vector<ChainReceiver> chooseReceivers(const FieldChainInput& in,
+                                           std::span<const ClusterEntities> visible)
+{
+    std::vector<ChainReceiver> chosen;
+    const auto wanted = std::max<std::size_t>(in.receivers / kPerCluster, 1);
+    const std::size_t every = std::max<std::size_t>(visible.size() / wanted, 1);
+    for (std::size_t i = every / 2; i < visible.size(); i += every) {
+        const SceneCluster& cluster = in.data.clusters[visible[i].cluster];
+        const SceneInstance& instance = in.data.instances[cluster.instance];
+        const MeshRange& mesh = in.data.meshes[instance.mesh];
+        if (instance.emission != vec3(0))
+            continue;
+        for (std::uint32_t v = 0; v < kClusterReceivers; v += kClusterReceivers / kPerCluster)
+            if (cluster.firstReceiver + v < mesh.firstReceiver + mesh.vertexCount)
+                chosen.push_back({&visible[i], cluster.instance, cluster.firstReceiver + v,
+                                  cluster.firstRadiance + v});
+    }
+    return chosen;
+}
+
+// The environment's order 4 at the nodes of kernel exact.
+std::array<vec3, 32> nodesOfOrder4(const FrameConstants& constants)
+{
+    std::array<vec3, 32> nodes{};
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        const Sh4 basis = shBasis(vec3(kShNodes[n]));
+        for (int k = 0; k < 16; ++k)
+            nodes[n] += kShNodes[n].w * basis.c[k] * vec3(constants.light[k]);
+    }
+    return nodes;
+}
+
+// Visibility by instance and mesh: that of what it shows, and of what it blocks.
+using Objects = std::map<std::pair<std::uint32_t, std::uint32_t>, PointVisibility>;
+
+class Chain {
+public:
+    Chain(const FieldChainInput& in, const Objects& objects)
+        : m_in(in), m_objects(objects), m_points(makeSamplePoints(std::bit_ceil(in.samples))),
+          m_nodes(nodesOfOrder4(in.constants))
+    {}
+
+    using Steps = std::array<vec3, kFieldCauses.size() + 1>;
+
+    [[nodiscard]] Steps at(const ChainReceiver& chosen) const
+    {
+        const GpuInstance& self = m_in.rows.instances[chosen.instance];
+        const ReceiverTexels& texels = m_in.data.receivers[chosen.index];
+        const vec3 eye(m_in.constants.eye);
+        const Receiver receiver = makeReceiver(self, texels.geometry, eye);
+        const vec3 origin =
+            receiver.position + rayOffset(m_in.traced, chosen.instance, {}) * receiver.normal;
+        const std::uint32_t base = hashBits(chosen.radianceIndex + 77);
+        const glm::uvec2 shift(base, hashBits(base + 0x9e3779b9u));
+
+        const ShRotation worldFromObject = instanceRotation(self);
+        const Sh4 own = m_objects.at({chosen.instance, m_in.data.instances[chosen.instance].mesh})
+                            .above(origin, receiver.normal, m_points, shift);
+        const std::vector<std::uint32_t>& rows = chosen.cluster->occluders;
+        std::vector<Sh4> traced, plain, rounded; // [occluder] visibility, world
+        std::vector<float> risen;
+        for (const std::uint32_t row : rows) {
+            const GpuInstance& g = m_in.rows.instances[row];
+            const PointVisibility& object = m_objects.at({row, *m_in.data.instances[row].occluder});
+            traced.push_back(object.at(origin, m_points, shift));
+            const FieldEntity entity = instanceField(g);
+            const FieldCell cell = fieldCell(fieldPoint(entity, receiver.position), entity.grid);
+            const TracedCell nodes = traceCell(object, entity, cell, m_in.kernel, m_points, shift);
+            const auto world = [&](const Sh4& steps) {
+                return shRotate(fieldVisibility(steps, entity.bandScale * cell.decay),
+                                entity.rotation);
+            };
+            plain.push_back(world(nodes.plain));
+            rounded.push_back(world(nodes.rounded));
+            risen.push_back(
+                horizonWeight(receiver.normal, vec3(g.sphere) - receiver.position, g.sphere.w));
+        }
+        const Sh4 ownRounded = roundedOwn(own, worldFromObject);
+
+        Steps steps{};
+        integrate(chosen, receiver, origin, own, traced, shift, steps);
+        steps[2] = product(receiver, own, traced, risen, false);
+        steps[3] = product(receiver, own, plain, risen, false);
+        steps[4] = product(receiver, ownRounded, rounded, risen, false);
+        steps[5] = product(receiver, ownRounded, rounded, risen, true);
+        const vec3 albedo(self.material);
+        for (vec3& step : steps)
+            step *= albedo;
+        steps[6] = vec3(m_in.drawn[chosen.radianceIndex]);
+        return steps;
+    }
+
+private:
+    // Steps 0 and 1, direction by direction: all of the scene by rays, and the coefficients.
+    void integrate(const ChainReceiver& chosen, const Receiver& receiver, vec3 origin,
+                   const Sh4& own, const std::vector<Sh4>& occluders, glm::uvec2 shift,
+                   Steps& steps) const
+    {
+        const Reflectance reflectance(normalize(receiver.normal),
+                                      normalize(vec3(m_in.constants.eye) - receiver.position),
+                                      m_in.data.instances[chosen.instance].material);
+        ShadowPacket packet;
+        packet.origin = origin;
+        packet.distances.fill(std::numeric_limits<float>::infinity());
+        std::array<vec3, ShadowPacket::kSize> light{};
+        const auto flush = [&] {
+            m_in.traced.occluded(packet);
+            for (int i = 0; i < packet.count; ++i)
+                steps[0] += packet.visible[i] ? light[i] : vec3(0);
+            packet.count = 0;
+        };
+        for (const glm::uvec2 p : m_points) {
+            const vec3 direction = reflectance.sample(scramble(p, shift));
+            const Reflectance::Value r = reflectance.evaluate(direction);
+            if (r.f <= 0)
+                continue;
+            const Sh4 basis = shBasis(direction);
+            vec3 radiance(0);
+            for (int k = 0; k < 16; ++k)
+                radiance += basis.c[k] * vec3(m_in.constants.light[k]);
+            radiance *= r.f / (r.pdf * static_cast<float>(m_points.size()));
+            float through = shDot(own, basis);
+            for (const Sh4& occluder : occluders)
+                through *= shDot(occluder, basis);
+            steps[1] += through * radiance;
+            packet.directions[packet.count] = direction;
+            light[static_cast<std::size_t>(packet.count)] = radiance;
+            if (++packet.count == ShadowPacket::kSize)
+                flush();
+        }
+        if (packet.count > 0)
+            flush();
+    }
+
+    // As systems/techniques/shadow_fields/combine_cpu.cpp walks the occluders.
+    [[nodiscard]] vec3 product(const Receiver& receiver, const Sh4& own,
+                               const std::vector<Sh4>& occluders, const std::vector<float>& weights,
+                               bool wholeLight) const
+    {
+        const auto weighted = [](Sh4 visibility, float weight) {
+            for (float& c : visibility.c)
+                c *= weight;
+            visibility.c[0] += (1 - weight) * kSqrt4Pi;
+            return visibility;
+        };
+        vec3 sum(0);
+        if (m_in.kernel == Kernel::Literal) {
+            Sh4 transfer = transferSh(own, receiver);
+            for (std::size_t i = 0; i < occluders.size(); ++i)
+                transfer = shProduct(weighted(occluders[i], weights[i]), transfer);
+            for (int k = 0; k < 16; ++k)
+                sum += transfer.c[k] * vec3(m_in.constants.light[k]);
+            return sum;
+        }
+        ShNodal transfer = transferNodal(own, receiver);
+        for (std::size_t i = 0; i < occluders.size(); ++i)
+            transfer = shMultiply(transfer, shNodes(weighted(occluders[i], weights[i])));
+        for (std::size_t n = 0; n < m_nodes.size(); ++n)
+            sum += transfer.v[n] * (wholeLight ? vec3(m_in.constants.lightNodes[n]) : m_nodes[n]);
+        return sum;
+    }
+
+    [[nodiscard]] static Sh4 roundedOwn(const Sh4& own, const ShRotation& worldFromObject)
+    {
+        Sh4 local = shRotate(own, shInverse(worldFromObject));
+        local.c[0] -= kSqrt4Pi;
+        for (float& c : local.c)
+            c = kSelfVisibilityScale *
+                std::clamp(std::round(c / kSelfVisibilityScale), -128.0f, 127.0f);
+        local.c[0] += kSqrt4Pi;
+        return shRotate(local, worldFromObject);
+    }
+
+    const FieldChainInput& m_in;
+    const Objects& m_objects;
+    std::vector<glm::uvec2> m_points;
+    std::array<vec3, 32> m_nodes;
+};
+
+} // namespace
+
+Result<FieldChain> traceFieldChain(const FieldChainInput& in)
+{
+    const std::vector<ClusterEntities> visible = cullAndSort(in.data, in.rows, in.constants);
+    const std::vector<ChainReceiver> receivers = chooseReceivers(in, visible);
+    Objects objects;
+    const auto need = [&](std::uint32_t row, std::uint32_t mesh) -> Result<void> {
+        if (objects.contains({row, mesh}))
+            return {};
+        const GpuInstance& g = in.rows.instances[row];
+        Result<PointVisibility> made =
+            PointVisibility::make(*in.meshes[mesh], worldFromObject(g), g.sphere);
+        if (!made)
+            return made.error();
+        objects.emplace(std::pair(row, mesh), std::move(*made));
+        return {};
+    };
+    Result<void> done;
+    for (const ChainReceiver& receiver : receivers) {
+        if (done)
+            done = need(receiver.instance, in.data.instances[receiver.instance].mesh);
+        for (const std::uint32_t row : receiver.cluster->occluders)
+            if (done)
+                done = need(row, *in.data.instances[row].occluder);
+    }
+    if (!done)
+        return done.error();
+
+    FieldChain out;
+    for (std::vector<vec3>& step : out.steps)
+        step.resize(receivers.size());
+    const Chain chain(in, objects);
+    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+        const Chain::Steps steps = chain.at(receivers[i]);
+        for (std::size_t s = 0; s < steps.size(); ++s)
+            out.steps[s][i] = steps[s];
+    });
+    return out;
+}
+
+} // namespace penumbra
