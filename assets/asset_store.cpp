@@ -56,9 +56,9 @@ const MeshAsset& AssetStore::mesh(AssetHandle handle) const
 
 const std::string& AssetStore::path(AssetHandle handle) const
 {
-    PENUMBRA_ASSERT(handle.index < m_entries.size(), "asset {} of {}", handle.index,
-                    m_entries.size());
-    return m_entries[handle.index].path;
+    PENUMBRA_ASSERT(handle.index < m_meshes.size(), "asset {} of {}", handle.index,
+                    m_meshes.size());
+    return m_meshes[handle.index].path;
 }
 
 std::vector<const MeshAsset*> AssetStore::meshes() const

@@ -42,13 +42,14 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
         if (componentInfo(id).bytes > 0)
             order.push_back(id);
     });
-    // Falling alignment: then every prefix sum is aligned for the column that starts there.
-    std::stable_sort(order.begin(), order.end(), [](ComponentId a, ComponentId b) {
-        return componentInfo(a).laneAlignment > componentInfo(b).laneAlignment;
+    std::sort(order.begin(), order.end(), [](ComponentId a, ComponentId b) {
+        return columnsBefore(componentInfo(a).laneAlignment, componentInfo(a).name,
+                             componentInfo(b).laneAlignment, componentInfo(b).name);
     });
     for (const ComponentId id : order)
         m_rowBytes += componentInfo(id).bytes;
     m_segmentShift = rowShift(kSegmentBytes, m_rowBytes);
+    m_segmentMask = segmentRows() - 1;
 
     uint32_t prefix = 0;
     for (const ComponentId id : order) {
@@ -56,16 +57,15 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
         m_columnOf[id] = static_cast<int16_t>(m_columns.size());
         const uint32_t laneBytes = info.bytes / info.laneCount;
         for (uint32_t lane = 0; lane < info.laneCount; ++lane, prefix += laneBytes)
-            m_columns.push_back(
-                {id, static_cast<uint16_t>(lane), laneBytes, prefix, -1, info.life});
+            m_columns.push_back({id, static_cast<uint16_t>(lane), laneBytes, prefix, info.life});
         m_hasLife = m_hasLife || info.life != nullptr;
-        if (info.rowChanges) {
-            m_columns[m_columnOf[id]].rowChanges = static_cast<int32_t>(m_rowChanges.size());
-            m_rowChanges.emplace_back(segmentRows());
-        }
     }
     m_columnCount = static_cast<uint16_t>(m_columns.size());
     m_columnVersions.resize(m_columns.size());
+    m_rowChanges.reserve(order.size()); // they stay where they are
+    for (const ComponentId id : order)
+        if (componentInfo(id).rowChanges)
+            m_columnVersions[m_columnOf[id]].rows = &m_rowChanges.emplace_back(segmentRows());
     setBlockShift(std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift));
 }
 
@@ -101,6 +101,8 @@ void Archetype::setColumnsAt(size_t block)
     for (size_t i = 0; i < m_columns.size(); ++i)
         m_columnsAt[block * m_columns.size() + i] =
             m_blocks[block] + (size_t{m_columns[i].prefix} << m_blockShift) + i * gap;
+    ++m_layouts;
+    setLayout();
 }
 
 void Archetype::addBlock()
@@ -137,6 +139,7 @@ void Archetype::reserve(uint32_t rows)
 {
     if (rows <= m_capacity)
         return;
+    window.rows = 0;
     const uint32_t full = m_segmentShift + kBlockSegmentShift;
     while (rows > blockRows() && m_blockShift < full)
         growFirstBlock();
@@ -211,7 +214,10 @@ Entity Archetype::closeGap(uint32_t row, Stamp stamp)
         }
         markStructural(row, stamp);
     }
-    m_disabled.removeRow(row, last, m_segmentShift);
+    if (m_disabled.count() != 0) [[unlikely]] {
+        m_disabled.removeRow(row, last, m_segmentShift);
+        setLayout();
+    }
     m_entities.pop_back();
     return moved;
 }
@@ -257,6 +263,7 @@ void Archetype::moveRows(uint32_t row, Archetype& source, std::span<const uint32
 
 void Archetype::trim()
 {
+    window.rows = 0;
     const size_t blocks = (size_t{count()} + blockRows() - 1) >> m_blockShift;
     for (; m_blocks.size() > blocks; m_blocks.pop_back())
         freeBlock(m_blocks.back());
@@ -266,6 +273,7 @@ void Archetype::trim()
     m_entities.shrink_to_fit();
     m_capacity = static_cast<uint32_t>(
         std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.capacity()}));
+    setLayout();
 }
 
 size_t Archetype::bookBytes() const

@@ -12,7 +12,7 @@
 // Threads may work on different segments, and on different columns of one segment, at once.
 #pragma once
 
-#include "runtime/ecs/component.h"
+#include "runtime/ecs/column.h"
 #include "runtime/ecs/disabled_rows.h"
 #include "runtime/ecs/entity_table.h"
 #include "runtime/ecs/row_changes.h"
@@ -24,15 +24,6 @@ inline constexpr uint32_t kFirstBlockBytes = 1024;
 inline constexpr uint32_t kBlockSegmentShift =
     3; // full block: 128 KiB, beyond it nothing is gained
 inline constexpr uint32_t kBlockSegments = 1u << kBlockSegmentShift;
-
-struct Column {
-    ComponentId component = 0;
-    uint16_t lane = 0;
-    uint32_t bytes = 0;      // of one row
-    uint32_t prefix = 0;     // bytes of one row in the columns before
-    int32_t rowChanges = -1; // index into m_rowChanges; on a component's first lane only
-    const ComponentLife* life = nullptr; // null: trivially copyable
-};
 
 class alignas(64) Archetype { // a cache line
 public:
@@ -66,6 +57,9 @@ public:
         return m_columnsAt.data() + size_t{row >> m_blockShift} * m_columnCount;
     }
     [[nodiscard]] uint32_t columnCount() const { return m_columnCount; }
+    // 0 unless all rows lie in one block and none is disabled; then a number that is another one
+    // whenever columnsAt(0) is.
+    [[nodiscard]] uint32_t layout() const { return m_layout; }
     [[nodiscard]] size_t rowInBlock(uint32_t row) const { return row & m_blockMask; }
 
     // Structure. reserve() makes room for that many rows in all; it alone allocates, and where it
@@ -79,11 +73,16 @@ public:
     uint32_t append(Entity entity, const Stamp& stamp) // room is there
     {
         const uint32_t row = count();
+        push(entity);
+        markStructural(row, stamp);
+        return row;
+    }
+    // The same where count() lies in `window`, and its version is that of now.
+    void push(Entity entity)
+    {
         if (m_entities.size() == m_entities.capacity())
             __builtin_unreachable(); // or the compiler puts growth into every caller
         m_entities.push_back(entity);
-        markStructural(row, stamp);
-        return row;
     }
     Entity removeRow(uint32_t row, Stamp stamp)
     {
@@ -128,15 +127,28 @@ public:
     {
         const uint32_t segment = row >> m_segmentShift;
         touch(column, segment, stamp);
-        if (const int32_t changes = m_columns[column].rowChanges; changes >= 0)
-            m_rowChanges[changes].mark(segment, row & (segmentRows() - 1));
+        if (RowChanges* const rows = m_columnVersions[column].rows)
+            rows->mark(segment, row & m_segmentMask);
+    }
+    // markRow() for a component known to have bits per row, or none. False, and nothing done, if it
+    // is the first of its segment in this version: that takes longer, and wants a function of its
+    // own.
+    template <bool kRowChanges>
+    [[nodiscard]] bool markAgain(uint32_t column, uint32_t row, const Stamp& stamp)
+    {
+        const uint32_t segment = row >> m_segmentShift;
+        if (m_versions[size_t{segment} * m_columnCount + column] != stamp.version)
+            return false;
+        if constexpr (kRowChanges)
+            m_columnVersions[column].rows->mark(segment, row & m_segmentMask);
+        return true;
     }
     // Rows count from the segment's start.
     void markRows(uint32_t column, uint32_t segment, uint32_t row, uint32_t count, Stamp stamp)
     {
         touch(column, segment, stamp);
-        if (const int32_t changes = m_columns[column].rowChanges; changes >= 0)
-            m_rowChanges[changes].mark(segment, row, count);
+        if (RowChanges* const rows = m_columnVersions[column].rows)
+            rows->mark(segment, row, count);
     }
     // All rows. Without bits per row, two stores, however many segments there are.
     template <bool kRowChanges>
@@ -164,9 +176,8 @@ public:
     {
         if (version(column, segment) <= since)
             return {};
-        const int32_t changes = m_columns[column].rowChanges;
-        return changes < 0 ? ChangedBits{~uint64_t{0}}
-                           : m_rowChanges[changes].changed(segment, since);
+        const RowChanges* const rows = m_columnVersions[column].rows;
+        return rows == nullptr ? ChangedBits{~uint64_t{0}} : rows->changed(segment, since);
     }
 
     // Disabled rows (World::setEnabled). A row that is enabled again counts as changed: readers
@@ -177,6 +188,7 @@ public:
         if (!disabled && m_disabled.test(row))
             markStructural(row, 1, stamp);
         m_disabled.set(row, m_segmentShift, disabled);
+        setLayout();
     }
     // `more` rows may then be appended and disabled without allocation.
     void makeDisabledRoom(uint32_t more) { m_disabled.makeRoom(count() + more, m_segmentShift); }
@@ -191,6 +203,7 @@ private:
     void setBlockShift(uint32_t shift);
     void addBlock();
     void setColumnsAt(size_t block);
+    void setLayout() { m_layout = m_blocks.size() == 1 && m_disabled.count() == 0 ? m_layouts : 0; }
     void growFirstBlock();
     void destroyRow(uint32_t row);
     void markAllRows(uint32_t column, Stamp stamp);
@@ -212,17 +225,18 @@ private:
         uint64_t& version = m_versions[size_t{segment} * m_columnCount + column];
         if (version == stamp.version)
             return;
-        const int32_t changes = m_columns[column].rowChanges;
-        if (changes >= 0 && version <= stamp.frameBase)
-            m_rowChanges[changes].startFrame(segment, version);
+        ColumnVersions& versions = m_columnVersions[column];
+        if (versions.rows != nullptr && version <= stamp.frameBase)
+            versions.rows->startFrame(segment, version);
         version = stamp.version;
         if (this->version(column) < stamp.version)
-            __atomic_store_n(&m_columnVersions[column].newest, stamp.version, __ATOMIC_RELAXED);
+            __atomic_store_n(&versions.newest, stamp.version, __ATOMIC_RELAXED);
     }
 
     struct ColumnVersions {
-        uint64_t newest = 0; // of all segments
-        uint64_t all = 0;    // when all rows were last marked at once; 0 with row changes
+        uint64_t newest = 0;        // of all segments
+        uint64_t all = 0;           // when all rows were last marked at once; 0 with row changes
+        RowChanges* rows = nullptr; // on the first lane of a component that has bits per row
     };
 
     // Walks touch the first two cache lines alone.
@@ -232,12 +246,14 @@ private:
     uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
     uint32_t m_blockMask = 0;  // blockRows() - 1
     uint32_t m_segmentShift = 0;
+    uint32_t m_segmentMask = 0; // segmentRows() - 1
+    uint32_t m_layout = 0;
     uint32_t m_capacity = 0;                      // rows that have room in everything
     std::vector<ColumnVersions> m_columnVersions; // [column]
     DisabledRows m_disabled;
-    std::vector<uint64_t> m_versions; // [segment][column], of the last write; first lanes only
-    std::vector<RowChanges> m_rowChanges;
-    uint32_t m_stampedSegment = kNone; // markStructural's last
+    std::vector<uint64_t> m_versions;     // [segment][column], of the last write; first lanes only
+    std::vector<RowChanges> m_rowChanges; // of the columns that have them
+    uint32_t m_stampedSegment = kNone;    // markStructural's last
     uint64_t m_stampedVersion = 0;
     std::vector<Column> m_columns;
     std::vector<std::byte*> m_blocks; // owned, all of one size
@@ -245,6 +261,7 @@ private:
     ComponentMask m_mask;
     uint32_t m_index;
     uint32_t m_rowBytes = 0;
+    uint32_t m_layouts = 0; // so far
     bool m_hasLife = false; // some column is not trivially copyable
     size_t m_blockBytes = 0;
 
@@ -253,6 +270,25 @@ public:
     // ComponentSet leads, by slot; null until asked for the first time.
     std::vector<uint32_t> pages;
     std::vector<Archetype*> withSet, withoutSet;
+
+    // Rows of one segment, so of one block and one page, that need no more than push(): there is
+    // room, and all columns of the segment have the version already.
+    struct Window {
+        uint32_t first = 0;
+        uint32_t rows = 0;     // 0: closed, as where rows have change bits to set
+        uint32_t rowPlace = 0; // EntityTable's place of a row, less the row
+        uint64_t version = 0;
+        std::byte* const* columns = nullptr; // columnsAt(first)
+    };
+    Window window;
+    void openWindow(uint32_t row, const Stamp& stamp) // after append()
+    {
+        const uint32_t first = row & ~m_segmentMask;
+        if (m_rowChanges.empty())
+            window = {first, std::min(segmentRows(), m_capacity - first),
+                      (pages[row >> kPageShift] << kPageShift) - (row & ~(kPageRows - 1)),
+                      stamp.version, columnsAt(row)};
+    }
 };
 
 } // namespace penumbra::ecs

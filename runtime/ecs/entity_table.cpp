@@ -19,6 +19,13 @@ Entity EntityTable::allocateNew()
     return {static_cast<uint32_t>(m_records.size() - 1), 1};
 }
 
+Entity EntityTable::allocateNewAt(uint32_t place)
+{
+    reserve(1);
+    m_records.push_back({1, place});
+    return {indexCount() - 1, 1};
+}
+
 // The next free indices for entities at `place` and the places after it, up to out.size(): those
 // that follow each other, up or down, as they mostly do. Then no load waits for the one before.
 uint32_t EntityTable::reuse(std::span<Entity> out, uint32_t place)

@@ -68,6 +68,18 @@ public:
         --m_freeCount;
         return {index, m_records[index].generation};
     }
+    // The same at once, with its place; makes room if it must.
+    Entity allocateAt(uint32_t place)
+    {
+        if (m_freeCount == 0) [[unlikely]]
+            return allocateNewAt(place);
+        const uint32_t index = m_firstFree;
+        Record& record = m_records[index];
+        m_firstFree = record.place & ~kFree;
+        --m_freeCount;
+        record.place = place;
+        return {index, record.generation};
+    }
     // For rows [row, row + out.size()), whose pages are given; room is there.
     void allocateMany(std::span<Entity> out, std::span<const uint32_t> pages, uint32_t row);
     void release(Entity entity)
@@ -114,6 +126,7 @@ private:
     };
 
     Entity allocateNew();
+    Entity allocateNewAt(uint32_t place);
     uint32_t reuse(std::span<Entity> out, uint32_t place);
     void grow(size_t count);
 

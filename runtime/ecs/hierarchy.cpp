@@ -103,12 +103,12 @@ void Hierarchy::refresh(const EntityTable& table)
     if (!m_stale)
         return findRuns(table);
     m_order.clear();
-    m_orderNodes.clear();
+    m_parentSlots.clear();
     m_levels.assign(1, 0);
     const auto pushChildren = [&](uint32_t node, uint32_t slot) {
         for (uint32_t child = m_nodes[node].firstChild; child != 0; child = m_nodes[child].next) {
             m_order.push_back({entityOf(child), slot});
-            m_orderNodes.push_back(child);
+            m_parentSlots.push_back(slot);
         }
     };
     pushChildren(0, kNone);
@@ -116,7 +116,7 @@ void Hierarchy::refresh(const EntityTable& table)
         const auto levelEnd = static_cast<uint32_t>(m_order.size());
         m_levels.push_back(levelEnd);
         for (; slot < levelEnd; ++slot)
-            pushChildren(m_orderNodes[slot], slot);
+            pushChildren(m_order[slot].entity.index + 1, slot);
     }
     findRuns(table);
     m_stale = false;
@@ -166,7 +166,7 @@ std::vector<Entity> Hierarchy::childrenOf(Entity parent) const
 size_t Hierarchy::bytes() const
 {
     return m_nodes.capacity() * sizeof(Node) + m_order.capacity() * sizeof(Slot) +
-           (m_orderNodes.capacity() + m_levels.capacity()) * sizeof(uint32_t) +
+           (m_parentSlots.capacity() + m_levels.capacity()) * sizeof(uint32_t) +
            m_runs.capacity() * sizeof(Run);
 }
 

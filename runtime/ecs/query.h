@@ -145,6 +145,8 @@ private:
     template <class Mark>
     static void forWritten(const Match& match, Mark&& mark); // mark(kRowChanges, column)
 
+    template <size_t... p>
+    static void prefetch(const Match& match, uint32_t row, std::index_sequence<p...>);
     // Pointers into all columns of all data terms, flat; as a tuple, to row `row`.
     template <size_t p>
     static auto pointer(const Match& match, std::byte* const* columnsAt, size_t row);
@@ -163,9 +165,9 @@ private:
     static void callRun(F& f, const Match& match, uint32_t row, uint32_t count,
                         std::index_sequence<p...>);
     template <class F, size_t... p>
-    static void callAll(F& f, const Match& match, std::index_sequence<p...>); // all rows
+    void callFirst(F& f, const Match& match, std::index_sequence<p...>) const; // a resolved one
     template <class F>
-    void callEnabled(F& f, const Match& match) const; // where rows are to be skipped
+    void callAll(F& f, const Match& match) const; // all rows of any match, marked
     template <class F>
     void callMarked(F& f, const Run& run) const; // marks, then callRun
     template <class F>

@@ -26,10 +26,14 @@ class QueryCache {
 public:
     struct Match {
         Archetype* archetype;
+        // Where the columns of the data terms begin, lanes one by one, null if absent: as long as
+        // the archetype's layout() is `layout`, which is never 0. Read and written atomically.
+        std::byte** firstColumns;
+        mutable uint32_t layout;
         std::array<int16_t, kMaxQueryTerms> columns; // data, then changed; -1: absent
     };
 
-    explicit QueryCache(const QueryTerms& terms) : m_terms(terms) {}
+    explicit QueryCache(const QueryTerms& terms);
 
     // Looks at the archetypes that appeared since the last call.
     void extend(std::span<Archetype* const> archetypes);
@@ -41,11 +45,27 @@ public:
 
     [[nodiscard]] std::span<const Match> matches() const { return m_matches; }
     [[nodiscard]] uint32_t rowCount() const;
-    [[nodiscard]] size_t bytes() const { return m_matches.capacity() * sizeof(Match); }
+    [[nodiscard]] size_t bytes() const
+    {
+        return m_matches.capacity() * sizeof(Match) +
+               m_firstColumns.capacity() * sizeof(std::byte*);
+    }
+
+    // True if `firstColumns` hold; the archetype then has one block and no disabled rows.
+    [[nodiscard]] static bool isResolved(const Match& match)
+    {
+        return __atomic_load_n(&match.layout, __ATOMIC_ACQUIRE) == match.archetype->layout();
+    }
+    // So that they do from now on, if they can. Thread-safe.
+    void resolve(const Match& match) const;
 
 private:
+    void addMatch(const Match& match);
+
     const QueryTerms& m_terms;
     std::vector<Match> m_matches;
+    uint32_t m_laneCount = 0;               // of all data terms
+    std::vector<std::byte*> m_firstColumns; // [match][lane]
     size_t m_seen = 0;
 };
 

@@ -37,7 +37,7 @@ void Query<Terms...>::markChanged(const Match& match, uint32_t segment, uint32_t
 
 // Appends the rows of a segment that pass, counted from its start and moved by `offset`, without a
 // branch per row: where few changed, here and there, wrong guesses would take longer than the work.
-// Writes up to three rows past the new end; returns it.
+// Writes up to two rows past the new end; returns it.
 template <class... Terms>
 uint16_t* Query<Terms...>::listChanged(const Match& match, uint32_t segment, uint32_t offset,
                                        uint16_t* end) const
@@ -64,7 +64,7 @@ uint16_t* Query<Terms...>::listChanged(const Match& match, uint32_t segment, uin
             continue;
         }
         do
-            for (uint32_t i = 0; i < 3; ++i) { // past the last bit, writes what counts for nothing
+            for (uint32_t i = 0; i < 2; ++i) { // past the last bit, writes what counts for nothing
                 *end = static_cast<uint16_t>(start + static_cast<uint32_t>(std::countr_zero(bits)));
                 end += bits != 0;
                 bits &= bits - 1;
@@ -83,7 +83,7 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, ui
     const Archetype& archetype = *match.archetype;
     const uint32_t shift = archetype.segmentShift();
     const uint32_t first = segment << shift;
-    std::array<uint16_t, kBlockSegments * kPageRows + 3> changed;
+    std::array<uint16_t, kBlockSegments * kPageRows + 2> changed;
     static_assert(kBlockSegments * kPageRows <= UINT16_MAX);
     uint16_t* end = changed.data();
     for (uint32_t s = segment; s <= last; ++s) {

@@ -16,7 +16,7 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
     static_assert(!Argument<0>::kSplit, "split into lanes, the parent's value has no address");
     using First = const typename Argument<0>::T;
     const IterationGuard guard(*m_iterating);
-    const std::span<const Hierarchy::Slot> order = hierarchy.order();
+    const uint32_t* const parentSlots = hierarchy.parentSlots().data();
     const std::span<const Hierarchy::Run> runs = hierarchy.runs();
 
     const auto matchOf = [&](const Archetype* archetype) -> const Match* {
@@ -65,7 +65,7 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
                 mark(*match, (run.row + i) >> archetype.segmentShift(),
                      (run.row + i) & (archetype.segmentRows() - 1), 1);
             }
-            if (const uint32_t slot = order[run.slot + i].parentSlot; slot != parentSlot) {
+            if (const uint32_t slot = parentSlots[run.slot + i]; slot != parentSlot) {
                 parentSlot = slot;
                 parent = slot == kNone ? nullptr : valueAt(slot);
             }

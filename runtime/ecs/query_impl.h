@@ -156,6 +156,23 @@ void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities,
     (std::get<k>(arguments).template store<Flat::first(k)>(columns, row), ...);
 }
 
+// The processor sees by itself how a walk through memory goes on, but not that it goes on in
+// another block: the first lines of its columns are fetched while the rows before are handled.
+template <class... Terms>
+template <size_t... p>
+[[gnu::always_inline]] inline void Query<Terms...>::prefetch([[maybe_unused]] const Match& match,
+                                                             [[maybe_unused]] uint32_t row,
+                                                             std::index_sequence<p...>)
+{
+    constexpr size_t kLine = 64, kLines = 4;
+    [[maybe_unused]] std::byte* const* const columnsAt = match.archetype->columnsAt(row);
+    [[maybe_unused]] const size_t inBlock = match.archetype->rowInBlock(row);
+    for (size_t line = 0; line < kLines; ++line) // as numbers: what is absent is null
+        (__builtin_prefetch(reinterpret_cast<const void*>(
+             reinterpret_cast<uintptr_t>(pointer<p>(match, columnsAt, inBlock)) + line * kLine)),
+         ...);
+}
+
 // Its own function because the compiler trusts __restrict on parameters alone: without it, loops
 // over more than a few columns do not vectorise.
 template <class... Terms>
@@ -182,28 +199,44 @@ template <class F, size_t... p>
 
 template <class... Terms>
 template <class F, size_t... p>
-[[gnu::always_inline]] inline void Query<Terms...>::callAll(F& f, const Match& match,
-                                                            std::index_sequence<p...>)
+[[gnu::always_inline]] inline void Query<Terms...>::callFirst(F& f, const Match& match,
+                                                              std::index_sequence<p...>) const
 {
+    // All loads before the marks, which the compiler must take for writes to any of this.
     const Archetype& archetype = *match.archetype;
-    std::byte* const* columnsAt = archetype.columnsAt(0);
-    const Entity* entities = archetype.entities().data();
-    size_t left = archetype.count();
-    for (const size_t block = archetype.blockRows(); left > block; left -= block) {
-        callRows(f, entities, block, pointer<p>(match, columnsAt, 0)...);
-        columnsAt += archetype.columnCount();
-        entities += block;
-    }
-    callRows(f, entities, left, pointer<p>(match, columnsAt, 0)...);
+    const Entity* const entities = archetype.entities().data();
+    const size_t count = archetype.count();
+    [[maybe_unused]] std::byte* const* const columns = match.firstColumns;
+    const auto call = [&](auto*... elements) {
+        markAll(match);
+        callRows(f, entities, count, elements...);
+    };
+    call(reinterpret_cast<typename Argument<Flat::kPlaces[p].argument>::Element*>(
+        __atomic_load_n(columns + p, __ATOMIC_RELAXED))...);
 }
 
-// Its own function so that each() keeps its registers.
+// Whole blocks, not segments: columns run on through a block, and longer loops cost less. Its own
+// function so that each() keeps its registers.
 template <class... Terms>
 template <class F>
-[[gnu::noinline, gnu::cold]] void Query<Terms...>::callEnabled(F& f, const Match& match) const
+[[gnu::noinline]] void Query<Terms...>::callAll(F& f, const Match& match) const
 {
-    for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
-        forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+    Archetype& archetype = *match.archetype;
+    if (skips(archetype)) {
+        for (uint32_t s = 0; s < archetype.segmentCount(); ++s)
+            forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
+        return;
+    }
+    if (archetype.count() == 0)
+        return;
+    m_cache->resolve(match);
+    markAll(match);
+    for (uint32_t row = 0; row < archetype.count(); row += archetype.blockRows()) {
+        if (const uint32_t next = row + archetype.blockRows(); next < archetype.count())
+            prefetch(match, next, FlatIndices());
+        callRun(f, match, row, std::min(archetype.blockRows(), archetype.count() - row),
+                FlatIndices());
+    }
 }
 
 template <class... Terms>

@@ -89,18 +89,14 @@ void Query<Terms...>::each(F&& f) const
         }
         return;
     }
-    // Whole blocks, not segments: columns run on through a block, and longer loops cost less.
+    // Few instructions up to the rows: where archetypes are small, and each loop's end hard to
+    // guess, they are what a walk costs.
     const IterationGuard guard(*m_iterating);
     for (const Match& match : m_cache->matches()) {
-        const Archetype& archetype = *match.archetype;
-        if (skips(archetype)) [[unlikely]] {
-            callEnabled(f, match);
-            continue;
-        }
-        if (archetype.count() == 0)
-            continue;
-        markAll(match);
-        callAll(f, match, FlatIndices());
+        if (QueryCache::isResolved(match)) [[likely]]
+            callFirst(f, match, FlatIndices());
+        else // on a copy: then this one need not be in memory
+            Query(*m_cache, m_stamp, m_since, *m_iterating).callAll(f, match);
     }
 }
 

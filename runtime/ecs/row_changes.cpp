@@ -10,16 +10,6 @@ void RowChanges::resize(uint32_t segmentCount)
     m_from.resize(segmentCount);
 }
 
-void RowChanges::startFrame(uint32_t segment, uint64_t version)
-{
-    uint64_t* const bits = fresh(segment);
-    for (uint32_t i = 0; i < m_words; ++i) { // few: library calls take longer
-        bits[m_words + i] = bits[i];
-        bits[i] = 0;
-    }
-    m_from[segment] = {version, m_from[segment].fresh};
-}
-
 void RowChanges::mark(uint32_t segment, uint32_t row, uint32_t count)
 {
     uint64_t* const words = fresh(segment);

@@ -35,7 +35,15 @@ public:
     void resize(uint32_t segmentCount);
 
     // To call before the first write of a frame to a segment, whose last write was at `version`.
-    void startFrame(uint32_t segment, uint64_t version);
+    void startFrame(uint32_t segment, uint64_t version)
+    {
+        uint64_t* const bits = fresh(segment);
+        for (uint32_t i = 0; i < m_words; ++i) { // few: library calls take longer
+            bits[m_words + i] = bits[i];
+            bits[i] = 0;
+        }
+        m_from[segment] = {version, m_from[segment].fresh};
+    }
 
     // Rows count from the segment's start.
     void mark(uint32_t segment, uint32_t row)

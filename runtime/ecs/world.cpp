@@ -89,6 +89,18 @@ void World::setPlaces(Archetype& archetype, uint32_t row)
     }
 }
 
+World::NewRow World::createOutsideWindow(const ComponentSet& set)
+{
+    Archetype& archetype = archetypeOf(set);
+    makeRoom(archetype, 1);
+    m_entities.reserve(1);
+    const Entity entity = m_entities.allocate();
+    const uint32_t row = archetype.append(entity, m_stamp);
+    m_entities.setFirstPlace(entity, archetype.pages[row >> kPageShift], row);
+    archetype.openWindow(row, m_stamp);
+    return {archetype.columnsAt(row), archetype.rowInBlock(row), entity};
+}
+
 Archetype& World::roomFor(const ComponentSet& set, size_t count)
 {
     assertStructural();

@@ -182,11 +182,12 @@ private:
     void growRoom(Archetype& archetype, uint32_t more);
     void setPlaces(Archetype& archetype, uint32_t row);
     struct NewRow {
-        Archetype* archetype;
-        uint32_t row;
+        std::byte* const* columns; // of its block
+        size_t row;                // within the block
         Entity entity;
     };
     NewRow createIn(const ComponentSet& set);
+    NewRow createOutsideWindow(const ComponentSet& set);
     Archetype& roomFor(const ComponentSet& set, size_t count);
     void appendNew(Archetype& archetype, std::span<Entity> out);
     [[nodiscard]] Archetype& withSet(Archetype& from, const ComponentSet& set);
@@ -253,6 +254,12 @@ private:
                         const Arguments&... arguments);
     template <class T>
     [[nodiscard]] T* find(Entity entity, Stamp stamp) const;
+    template <class T>
+    [[nodiscard]] T* findUnknown(Entity entity, Stamp stamp) const;
+    template <class T>
+    [[nodiscard]] static T* findFirst(Place at, uint32_t column, Stamp stamp);
+    template <class T>
+    [[nodiscard]] static T* valueAt(const Place& at, uint32_t column);
     template <class T>
     void setStamped(Entity entity, const T& value, Stamp stamp) const;
     template <class T>

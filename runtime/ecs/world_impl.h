@@ -52,13 +52,16 @@ struct BulkArgument<std::span<T, kExtent>> {
 inline World::NewRow World::createIn(const ComponentSet& set)
 {
     assertStructural();
-    Archetype& archetype = archetypeOf(set);
-    makeRoom(archetype, 1);
-    m_entities.reserve(1);
-    const Entity entity = m_entities.allocate();
-    const uint32_t row = archetype.append(entity, m_stamp);
-    m_entities.setFirstPlace(entity, archetype.pages[row >> kPageShift], row);
-    return {&archetype, row, entity};
+    if (set.slot >= m_bySet.size() || m_bySet[set.slot] == nullptr) [[unlikely]]
+        return createOutsideWindow(set);
+    Archetype& archetype = *m_bySet[set.slot];
+    const Archetype::Window& window = archetype.window;
+    const uint32_t row = archetype.count();
+    if (row - window.first >= window.rows || window.version != m_stamp.version) [[unlikely]]
+        return createOutsideWindow(set);
+    const Entity entity = m_entities.allocateAt(window.rowPlace + row);
+    archetype.push(entity);
+    return {window.columns, archetype.rowInBlock(row), entity};
 }
 
 // A value on its way into a row, as a copy: the caller's may lie in this world, in a row that is
@@ -70,21 +73,24 @@ struct Incoming {
     // `over`: the row holds a value already.
     void store(const Archetype::RowPlace& place, [[maybe_unused]] bool over)
     {
-        if constexpr (!kIsTag<T>) {
-            // Known since the archetype was looked for.
-            const auto column = static_cast<size_t>(place.columnOf[kKnownId<T> - 1]);
-            if constexpr (kIsPlain<T>) {
-                using Lanes = std::array<Lane<T>, kLaneCount<T>>;
-                const Lanes lanes = std::bit_cast<Lanes>(value);
-                for (size_t lane = 0; lane < lanes.size(); ++lane)
-                    new (place.columns[column + lane] + place.row * sizeof(Lane<T>))
-                        Lane<T>(lanes[lane]);
-            } else {
-                T* at = reinterpret_cast<T*>(place.columns[column]) + place.row;
-                if (over)
-                    at->~T();
-                new (at) T(static_cast<T&&>(value));
-            }
+        if constexpr (!kIsTag<T>) // known since the archetype was looked for
+            storeAt(place.columns + place.columnOf[kKnownId<T> - 1], place.row, over);
+    }
+    // At a row of the block whose columns these are, from the component's first on.
+    void storeAt([[maybe_unused]] std::byte* const* columns, [[maybe_unused]] size_t row,
+                 [[maybe_unused]] bool over)
+    {
+        if constexpr (kIsTag<T>) {
+        } else if constexpr (kIsPlain<T>) {
+            using Lanes = std::array<Lane<T>, kLaneCount<T>>;
+            const Lanes lanes = std::bit_cast<Lanes>(value);
+            for (size_t lane = 0; lane < lanes.size(); ++lane)
+                new (columns[lane] + row * sizeof(Lane<T>)) Lane<T>(lanes[lane]);
+        } else {
+            T* at = reinterpret_cast<T*>(columns[0]) + row;
+            if (over)
+                at->~T();
+            new (at) T(static_cast<T&&>(value));
         }
     }
 };
@@ -111,10 +117,10 @@ Entity World::create(Ts&&... values)
         checkParent({}, parentIn(values...));
     const ComponentSet& set = componentSet<std::remove_cvref_t<Ts>...>();
     const NewRow made = createIn(set);
-    if constexpr (sizeof...(Ts) > 0) {
-        const Archetype::RowPlace row = made.archetype->rowPlace(made.row);
-        (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).store(row, false), ...);
-    }
+    (std::get<Incoming<std::remove_cvref_t<Ts>>>(incoming).storeAt(
+         made.columns + firstColumnAmong<std::remove_cvref_t<Ts>, std::remove_cvref_t<Ts>...>(),
+         made.row, false),
+     ...);
     if constexpr (kHasParent)
         attachOrFail(made.entity, parentIn(values...));
     if (m_observers != nullptr) [[unlikely]]

@@ -44,12 +44,38 @@ T* World::find(Entity entity, Stamp stamp) const
     static_assert(kLaneCount<Component> == 1,
                   "split into lanes, it has no address: value(), set()");
     static_assert(std::is_const_v<T> || !std::is_same_v<T, Parent>, "setParent() changes parents");
+    // What is rare is a call at the end: calls in the middle make the way past them longer too.
+    const uint32_t known = __atomic_load_n(&kKnownId<Component>, __ATOMIC_RELAXED);
+    if (known == 0) [[unlikely]]
+        return findUnknown<T>(entity, stamp);
     const Place at = place(entity);
-    const int32_t column = at.archetype->columnOf(componentId<Component>());
+    const int32_t column = at.archetype->columnOf(static_cast<ComponentId>(known - 1));
     if (column < 0)
         return nullptr;
     if constexpr (!std::is_const_v<T>)
-        at.archetype->markRow(column, at.row, stamp);
+        if (!at.archetype->template markAgain<ComponentTraits<Component>::kRowChanges>(
+                column, at.row, stamp)) [[unlikely]]
+            return findFirst<T>(at, column, stamp);
+    return valueAt<T>(at, column);
+}
+
+template <class T>
+[[gnu::noinline, gnu::cold]] T* World::findUnknown(Entity entity, Stamp stamp) const
+{
+    static_cast<void>(componentId<std::remove_const_t<T>>());
+    return find<T>(entity, stamp);
+}
+
+template <class T>
+[[gnu::noinline]] T* World::findFirst(Place at, uint32_t column, Stamp stamp)
+{
+    at.archetype->markRow(column, at.row, stamp);
+    return valueAt<T>(at, column);
+}
+
+template <class T>
+T* World::valueAt(const Place& at, uint32_t column)
+{
     return reinterpret_cast<T*>(at.archetype->columnsAt(at.row)[column]) +
            at.archetype->rowInBlock(at.row);
 }

@@ -93,6 +93,67 @@ TEST(Archetype, RemoveFillsTheGapWithTheLastRow)
     EXPECT_EQ(health, 3u);
 }
 
+namespace {
+
+template <class... Ts>
+void expectKnownColumns()
+{
+    const Archetype archetype(0, componentSet<Ts...>().mask);
+    const auto expectOne = [&]<class T>() {
+        if (!kIsTag<T>) {
+            EXPECT_EQ(archetype.columnOf(componentId<T>()),
+                      static_cast<int32_t>(firstColumnAmong<T, Ts...>()))
+                << ComponentTraits<T>::kName;
+        }
+    };
+    (expectOne.template operator()<Ts>(), ...);
+}
+
+} // namespace
+
+// World::create() writes where the types say that the columns are.
+TEST(Archetype, ColumnsFollowFromTheTypesAlone)
+{
+    expectKnownColumns<Health>();
+    expectKnownColumns<Velocity, Position>();
+    expectKnownColumns<Position, Velocity>();
+    expectKnownColumns<Health, Frozen, Wide, Velocity, Link, Position, Gravity>();
+    expectKnownColumns<Gravity, Position, Link, Velocity, Wide, Frozen, Health>();
+}
+
+// Queries keep the addresses of columns as long as this number is the same.
+TEST(Archetype, LayoutTellsWhetherColumnsMoved)
+{
+    Archetype archetype(0, componentSet<Position>().mask);
+    EXPECT_EQ(archetype.layout(), 0u);
+    uint32_t layout = 0, blocks = 0;
+    const std::byte* first = nullptr;
+    for (uint32_t i = 0; i < 30000; ++i) {
+        const Entity entity{i, 1};
+        archetype.append({&entity, 1}, {1, 0});
+        const bool moved = archetype.columnsAt(0)[0] != first;
+        first = archetype.columnsAt(0)[0];
+        ASSERT_EQ(archetype.layout() == 0, i >= archetype.blockRows()) << i; // several blocks
+        ASSERT_TRUE(!moved || archetype.layout() != layout) << i;
+        blocks += moved;
+        layout = archetype.layout();
+    }
+    EXPECT_GT(blocks, 3u);
+    while (archetype.count() > 10)
+        archetype.removeRow(0, {1, 0});
+    archetype.trim();
+    layout = archetype.layout();
+    EXPECT_NE(layout, 0u);
+    archetype.setDisabled(3, true, {1, 0});
+    EXPECT_EQ(archetype.layout(), 0u);
+    archetype.removeRow(3, {1, 0});
+    EXPECT_EQ(archetype.layout(), layout);
+    while (archetype.count() > 0)
+        archetype.removeRow(0, {1, 0});
+    archetype.trim();
+    EXPECT_EQ(archetype.layout(), 0u);
+}
+
 TEST(Archetype, TagsTakeNoSpace)
 {
     Archetype archetype(0, componentSet<Frozen>().mask);

@@ -151,4 +151,41 @@ TEST_F(Change, NewAndMovedRowsCount)
     EXPECT_EQ(changed<Health>(), std::vector{entities[kCount - 2]});
 }
 
+// create() asks little of rows that follow each other: none of them goes unmarked, whatever frames
+// begin and rows leave in between.
+TEST(ChangeOfNew, CountsOneByOneInEveryFrame)
+{
+    World world;
+    std::vector<Entity> entities;
+    for (uint32_t frame = 0; frame < 24; ++frame) {
+        const uint64_t seen = world.version();
+        world.advance();
+        const size_t leaving = frame % 3 == 2 ? entities.size() / 2 + 100 : frame % 2 * 7;
+        for (size_t i = 0; i < leaving && !entities.empty(); ++i) {
+            world.destroy(entities.back());
+            entities.pop_back();
+        }
+        if (frame % 4 == 3)
+            world.trim();
+        std::vector<Entity> made;
+        for (uint32_t i = 0; i < 500 + frame * 97; ++i) {
+            const auto x = static_cast<float>(entities.size());
+            made.push_back(world.create(Velocity{x, 0, 1}, Position{0, x, 0}, Frozen{}));
+            entities.push_back(made.back());
+        }
+        std::vector<Entity> found;
+        world.query<const Position, const Velocity, Changed<Position>>().since(seen).each(
+            [&](Entity entity, const Position& p, const Velocity& v) {
+                ASSERT_EQ(p.y, v.x);
+                ASSERT_EQ(v.z, 1);
+                found.push_back(entity);
+            });
+        ASSERT_GE(found.size(), made.size()) << frame; // rows lie in the order of creation
+        EXPECT_TRUE(std::equal(made.begin(), made.end(), found.end() - made.size())) << frame;
+        EXPECT_EQ(world.query<const Velocity>().count(), entities.size());
+        for (const Entity entity : entities)
+            ASSERT_EQ(world.value<Velocity>(entity).x, world.get<const Position>(entity).y);
+    }
+}
+
 } // namespace penumbra::ecs

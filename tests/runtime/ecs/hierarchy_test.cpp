@@ -23,6 +23,8 @@ TEST(Hierarchy, ListsParentsBeforeChildrenLevelByLevel)
     EXPECT_TRUE(hierarchy.order()[0].isRoot());
     EXPECT_EQ(hierarchy.order()[1].parentSlot, 0u);
     EXPECT_EQ(hierarchy.order()[3].parentSlot, 1u);
+    for (size_t i = 0; i < order.size(); ++i)
+        EXPECT_EQ(hierarchy.parentSlots()[i], hierarchy.order()[i].parentSlot);
     EXPECT_EQ(std::vector(hierarchy.levels().begin(), hierarchy.levels().end()),
               (std::vector<uint32_t>{0, 1, 3, 4}));
     EXPECT_EQ(hierarchy.parentOf(leaf), middle);

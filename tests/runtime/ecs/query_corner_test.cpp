@@ -53,6 +53,53 @@ TEST(QueryCorner, CachesMeetLaterArchetypes)
     EXPECT_EQ(maybe(), std::pair(0u, 2u));
 }
 
+// What a query remembers of where columns lie does not outlive it: blocks grow, become several, are
+// given back; rows are disabled.
+TEST(QueryCorner, FindColumnsThatMoved)
+{
+    World world;
+    std::vector<Entity> entities;
+    const auto create = [&](uint32_t count) {
+        for (uint32_t i = 0; i < count; ++i) {
+            const auto x = static_cast<float>(entities.size());
+            entities.push_back(world.create(Position{x, 0, 0}, Velocity{0, x, 0}));
+        }
+    };
+    const auto expectAll = [&](const Query<Position, const Velocity, Maybe<const Health>>& query) {
+        size_t at = 0;
+        query.each([&](Entity entity, Position& p, const Velocity& v, const Health* health) {
+            ASSERT_LT(at, entities.size());
+            ASSERT_EQ(entity, entities[at]);
+            ASSERT_EQ(p.x, v.y);
+            ASSERT_EQ(p.x, static_cast<float>(entity.index));
+            ASSERT_EQ(health, nullptr);
+            ++at;
+        });
+        EXPECT_EQ(at, entities.size());
+    };
+    create(1);
+    auto again = world.query<Position, const Velocity, Maybe<const Health>>();
+    while (entities.size() < 20000) {
+        create(static_cast<uint32_t>(entities.size() / 3 + 1));
+        expectAll(again); // made before the rows
+        expectAll(world.query<Position, const Velocity, Maybe<const Health>>());
+    }
+    while (entities.size() > 5) {
+        world.destroy(entities.back());
+        entities.pop_back();
+    }
+    expectAll(again);
+    world.trim();
+    expectAll(again);
+    const Entity hidden = entities.back();
+    entities.pop_back();
+    world.setEnabled(hidden, false);
+    expectAll(again);
+    world.setEnabled(hidden, true);
+    entities.push_back(hidden);
+    expectAll(again);
+}
+
 // As documented: a Query that is kept sees new rows, but new archetypes only once it is asked
 // again.
 TEST(QueryCorner, KeptQueriesSeeRowsOfKnownArchetypes)
