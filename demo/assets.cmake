@@ -13,11 +13,11 @@ function(penumbra_demo_mesh NAME SOURCE)
     set(assets ${assets} ${output} PARENT_SCOPE)
 endfunction()
 
-foreach(shape ball chess_pawn gear mug panel rounded_cube teapot torus_knot floor)
+foreach(shape ball chess_pawn gear mug panel rounded_cube teapot torus_knot floor floor_coarse)
     set(source ${shape_dir}/${shape}.obj)
     add_custom_command(OUTPUT ${source}
         COMMAND penumbra-content ${shape} -o ${source} DEPENDS penumbra-content COMMENT "Shape ${shape}" VERBATIM)
-    if(shape STREQUAL floor)
+    if(shape MATCHES "^floor")
         penumbra_demo_mesh(${shape} ${source} --no-field) # the ground is in the light, see systems/frame_constants.h
     else()
         penumbra_demo_mesh(${shape} ${source})

@@ -57,7 +57,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"device", options.cpuScalar ? "cpu-scalar" : device.properties.deviceName},
             {"driver", device.driver},
             {"kernel", kernelName(options.cpuScalar ? Kernel::Literal : options.kernel)},
-            {"receivers", "vertex"},
+            {"receivers", receiverKindName(options.receivers)},
             {"size", {options.width, options.height}},
             {"frames", measured.frames},
             {"objects", dynamic},
@@ -76,7 +76,8 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"bytes",
              {{"fields", data.fieldSamples.size() * sizeof(uvec4)},
               {"meshes", data.receivers.size() * sizeof(ReceiverTexels) + data.indices.size() * 4},
-              {"gpu", gpuBytes(renderer.scene().buffers()) + renderer.scene().surfaces().bytes()},
+              {"gpu", gpuBytes(renderer.scene().buffers()) + renderer.scene().surfaces().bytes() +
+                          (renderer.pixels() ? gpuBytes(renderer.pixels()->targets) : 0)},
               {"peakRss", peakMemory()}}}};
 }
 
@@ -130,6 +131,8 @@ Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptio
     if (!made)
         return made.error();
     Renderer& renderer = **made;
+    if (Result<void> set = renderer.setReceivers(options.receivers); !set)
+        return set;
     Simulation simulation(scene);
     const View view = viewOf(scene.camera, static_cast<float>(options.width) /
                                                static_cast<float>(options.height));

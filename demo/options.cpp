@@ -69,9 +69,11 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
                        "error and time of fields and shadow rays over the size of the light, as "
                        "CSV and PNG in --out; a run of its own with a scene of its own")
             ->check(CLI::IsMember({"lights"}));
-    app.add_option("--receivers", receivers, "what receives light")
+    app.add_option("--receivers", receivers,
+                   "what receives light: vertex, pixel, or pixel-half (a quarter of the pixels, "
+                   "the others between them)")
         ->capture_default_str()
-        ->check(CLI::IsMember({"vertex"}));
+        ->check(CLI::IsMember({"vertex", "pixel", "pixel-half"}));
     app.add_option("--device", options.device, "name or index of a device, or cpu-scalar");
     app.add_flag("--list-devices", options.listDevices, "list the devices and stop");
     app.add_option("--seed", options.seed, "seed of the scene")->capture_default_str();
@@ -96,12 +98,16 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
                                            "is a run of its own: leave out " + other->get_name());
         if (sweepOption->count() > 0 && options.device == "cpu-scalar")
             throw CLI::ValidationError("--sweep", "compares kernels on a device, not cpu-scalar");
+        if (receivers != "vertex" && (compareOption->count() > 0 || options.device == "cpu-scalar"))
+            throw CLI::ValidationError("--receivers",
+                                       "the scalar CPU path works on vertices: leave it out");
         if (reference < 16 || reference > 65536)
             throw CLI::ValidationError("--reference", "directions per receiver: 16 to 65536");
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     }
     options.kernel = *kernelFromName(kernel);
+    options.receivers = receiverKindFromName(receivers);
     if (referenceOption->count() > 0)
         options.reference = reference;
     if (options.device == "cpu-scalar") {

@@ -1,6 +1,7 @@
 // The command line of penumbra-demo.
 #pragma once
 
+#include "systems/receiver_kind.h"
 #include "systems/techniques/shadow_fields/kernel.h"
 
 #include <cstdint>
@@ -20,6 +21,7 @@ struct DemoOptions {
     std::optional<std::uint32_t> reference; // directions per receiver
     std::string sweep;                      // lights, empty: none
     Kernel kernel = Kernel::Exact;
+    ReceiverKind receivers = ReceiverKind::Vertex;
     std::string device; // name, index, empty: the best
     bool cpuScalar = false;
     std::uint64_t seed = 1;

@@ -56,7 +56,7 @@ Result<std::vector<LightErrors>> measureLights(Renderer& renderer, const DemoSce
 Result<Image8> drawErrors(Renderer& renderer, const View& view, const Receivers& receivers,
                           std::span<const float> perReceiver, double white, float exposure)
 {
-    std::vector<vec4> radiance(renderer.scene().data().radianceCount, vec4(0, 0, 0, 1));
+    std::vector<vec4> radiance(renderer.radianceCount(), vec4(0, 0, 0, 1));
     const float scale = white > 0 ? 1 / (static_cast<float>(white) * exposure) : 0;
     for (std::size_t i = 0; i < perReceiver.size(); ++i)
         radiance[receivers.radianceIndex[i]] = vec4(vec3(perReceiver[i] * scale), 1);

@@ -120,21 +120,31 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene,
     return out;
 }
 
-// byCause of reference.json, relative to `mean`; what each means: docs/reference.md.
-Result<nlohmann::ordered_json> byCause(const FieldChainInput& chain, const Figures& figures,
-                                       double vertexInterpolation)
+// Of the frame last drawn: its view and scene are those of now.
+Result<Receivers> receiversOf(Renderer& renderer, const CpuInstances& rows, const View& view)
+{
+    const SceneData& data = renderer.scene().data();
+    if (!renderer.pixels())
+        return visibleReceivers(data, rows, renderer.constants(view));
+    const Result<GbufferPixels> pixels = renderer.gbuffer();
+    if (!pixels)
+        return pixels.error();
+    return pixelReceivers(data, rows, renderer.constants(view), *pixels);
+}
+
+// The finer part of byCause, for receivers that are vertices. What each means: docs/reference.md.
+Result<void> addChain(nlohmann::ordered_json& causes, const FieldChainInput& chain,
+                      const Figures& figures)
 {
     const Result<FieldChain> traced = traceFieldChain(chain);
     if (!traced)
         return traced.error();
     const std::vector<vec3> none(traced->steps[0].size(), vec3(0));
-    nlohmann::ordered_json json{{"lightBandLimit", figures.lightBandLimit},
-                                {"fieldsAndProducts", figures.fieldsAndProducts}};
     for (std::size_t c = 0; c < kFieldCauses.size(); ++c)
-        json[kFieldCauses[c]] = compareRadiance(traced->steps[c + 1], traced->steps[c], none).rmse /
-                                figures.errors.meanUnshadowed;
-    json["vertexInterpolation"] = vertexInterpolation;
-    return json;
+        causes[kFieldCauses[c]] =
+            compareRadiance(traced->steps[c + 1], traced->steps[c], none).rmse /
+            figures.errors.meanUnshadowed;
+    return {};
 }
 
 } // namespace
@@ -145,7 +155,10 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     using Clock = std::chrono::steady_clock;
     const SceneData& data = renderer.scene().data();
     const CpuInstances rows = updateInstances(data);
-    const Receivers receivers = visibleReceivers(data, rows, renderer.constants(view));
+    const Result<Receivers> gathered = receiversOf(renderer, rows, view);
+    if (!gathered)
+        return gathered.error();
+    const Receivers& receivers = *gathered;
     const Result<TracedScene> traced = traceable(data, rows, scene.assets.meshes());
     if (!traced)
         return traced.error();
@@ -185,18 +198,25 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     if (!errorImage)
         return errorImage.error();
     const Kernel kernel = options.cpuScalar ? Kernel::Literal : options.kernel;
-    const Result<nlohmann::ordered_json> causes =
-        byCause({data, rows, scene.assets.meshes(), traced->scene, renderer.constants(view), kernel,
-                 skyRadiance, 512, options.samples},
-                figures, interpolationError(*traced, scene, camera, options.samples));
-    if (!causes)
-        return causes.error();
+    nlohmann::ordered_json causes{{"lightBandLimit", figures.lightBandLimit},
+                                  {"fieldsAndProducts", figures.fieldsAndProducts}};
+    if (!renderer.pixels()) {
+        if (Result<void> added =
+                addChain(causes,
+                         {data, rows, scene.assets.meshes(), traced->scene,
+                          renderer.constants(view), kernel, skyRadiance, 512, options.samples},
+                         figures);
+            !added)
+            return added;
+        causes["vertexInterpolation"] = interpolationError(*traced, scene, camera, options.samples);
+    }
     const FlipResult flipped = flipMap(picture.image, *fields);
 
     nlohmann::ordered_json json{
         {"scene", scene.name},
         {"kernel", options.cpuScalar ? "cpu-scalar" : kernelName(options.kernel)},
         {"receivers", receivers.receivers.size()},
+        {"receiverKind", receiverKindName(renderer.receivers())},
         {"samples", options.samples},
         {"meanUnshadowed", errors.meanUnshadowed},
         {"rmse", errors.rmse},
@@ -204,7 +224,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         {"bias", errors.bias},
         {"maxAbs", errors.maxAbs},
         {"flip", flipped.mean},
-        {"byCause", *causes},
+        {"byCause", causes},
         {"referenceSeconds", figures.seconds},
         {"pictureSeconds", picture.seconds},
         {"fieldSeconds", fieldSeconds}};

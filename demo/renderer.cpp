@@ -59,7 +59,7 @@ Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool comb
     Result<GpuFrame> frame = m_ring.beginFrame();
     if (frame)
         recordFrame(*frame, m_passes, m_scene, constants(view),
-                    {kernel, combine, m_exposure, m_surfaces}, m_targets);
+                    {kernel, combine, m_exposure, m_surfaces, pixels()}, m_targets);
     return frame;
 }
 
@@ -103,11 +103,26 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     time("instance_update",
          [&](const GpuFrame& gpu) { recordInstanceUpdate(gpu, m_passes, m_scene); });
     time("cluster_cull", [&](const GpuFrame& gpu) { recordClusterCull(gpu, m_passes, m_scene); });
-    time("entity_sort", [&](const GpuFrame& gpu) { recordEntitySort(gpu, m_passes, m_scene); });
-    time("combine", [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, m_scene, kernel); });
+    if (m_pixels) {
+        time("gbuffer", [&](const GpuFrame& gpu) {
+            computeToGraphics(gpu.cmd); // the instances of the submission before
+            recordGbuffer(gpu, *m_pixels, m_scene, m_targets.depth);
+        });
+        time("pixel_clusters", [&](const GpuFrame& gpu) { recordPixelClusters(gpu, *m_pixels); });
+        time("pixel_bounds", [&](const GpuFrame& gpu) { recordPixelBounds(gpu, *m_pixels); });
+    }
+    const auto receivers = [&](const GpuFrame& gpu) {
+        return receiverClusters(gpu, m_scene, pixels());
+    };
+    time("entity_sort",
+         [&](const GpuFrame& gpu) { recordEntitySort(gpu, m_passes, receivers(gpu)); });
+    time("combine",
+         [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, receivers(gpu), kernel); });
+    if (m_pixels)
+        time("pixel_resolve", [&](const GpuFrame& gpu) { recordPixelResolve(gpu, *m_pixels); });
     time("raster", [&](const GpuFrame& gpu) {
         computeToGraphics(gpu.cmd); // the radiance of the submission before
-        recordRaster(gpu, m_passes, m_scene, m_targets, m_surfaces);
+        recordRaster(gpu, m_passes, m_scene, m_targets, m_surfaces, pixels());
     });
     time("post", [&](const GpuFrame& gpu) { recordPost(gpu, m_passes, m_targets, m_exposure); });
     if (!failed)
@@ -121,6 +136,38 @@ Result<void> Renderer::resize(VkExtent2D extent)
     if (!targets)
         return targets.error();
     m_ring.retire(std::exchange(m_targets, std::move(*targets)));
+    return m_pixels ? createPixels() : Result<void>{};
+}
+
+Result<void> Renderer::setReceivers(ReceiverKind kind)
+{
+    m_receivers = kind;
+    if (kind != ReceiverKind::Vertex)
+        return createPixels();
+    if (m_pixels)
+        m_ring.retire(std::exchange(m_pixels, std::nullopt));
+    return {};
+}
+
+Result<void> Renderer::createPixels()
+{
+    const std::uint32_t rate = m_receivers == ReceiverKind::Pixel ? 1 : 2;
+    PixelReceivers pixels;
+    if (m_pixels && m_pixels->passes.rate == rate) {
+        pixels.passes = std::move(m_pixels->passes);
+    } else {
+        Result<PixelPasses> passes = createPixelPasses(m_device, rate);
+        if (!passes)
+            return passes.error();
+        pixels.passes = std::move(*passes);
+    }
+    Result<PixelTargets> targets = createPixelTargets(m_device, pixels.passes, m_scene, extent());
+    if (!targets)
+        return targets.error();
+    pixels.targets = std::move(*targets);
+    if (m_pixels)
+        m_ring.retire(std::exchange(m_pixels, std::nullopt));
+    m_pixels = std::move(pixels);
     return {};
 }
 
@@ -151,13 +198,30 @@ Result<std::vector<vec3>> Renderer::linearPicture() const
 
 Result<std::vector<vec4>> Renderer::radiance() const
 {
-    return readBackAs<vec4>(m_device, m_scene.buffers().radiance);
+    if (!m_pixels)
+        return readBackAs<vec4>(m_device, m_scene.buffers().radiance);
+    Result<std::vector<std::byte>> bytes =
+        readBack(m_device, m_pixels->targets.radiance, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    if (!bytes)
+        return bytes.error();
+    std::vector<vec4> radiance(radianceCount());
+    for (std::size_t i = 0; i < radiance.size(); ++i) {
+        std::uint64_t halves = 0;
+        std::memcpy(&halves, bytes->data() + sizeof(halves) * i, sizeof(halves));
+        radiance[i] = glm::unpackHalf4x16(halves);
+    }
+    return radiance;
+}
+
+std::size_t Renderer::radianceCount() const
+{
+    return m_pixels ? std::size_t{extent().width} * extent().height : m_scene.data().radianceCount;
 }
 
 Result<CullResult> Renderer::cullResult() const
 {
-    Result<std::vector<CullResult>> result =
-        readBackAs<CullResult>(m_device, m_scene.buffers().cull);
+    Result<std::vector<CullResult>> result = readBackAs<CullResult>(
+        m_device, m_pixels ? m_pixels->targets.cull : m_scene.buffers().cull);
     if (!result)
         return result.error();
     return result->front();
@@ -165,7 +229,13 @@ Result<CullResult> Renderer::cullResult() const
 
 Result<void> Renderer::setRadiance(std::span<const vec4> radiance)
 {
-    return upload(m_device, m_scene.buffers().radiance, std::as_bytes(radiance));
+    if (!m_pixels)
+        return upload(m_device, m_scene.buffers().radiance, std::as_bytes(radiance));
+    std::vector<std::uint64_t> halves;
+    for (const vec4& r : radiance)
+        halves.push_back(glm::packHalf4x16(r));
+    return upload(m_device, m_pixels->targets.radiance, std::as_bytes(std::span(halves)),
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 } // namespace penumbra

@@ -8,6 +8,7 @@
 #include "systems/environment_lighting.h"
 #include "systems/extract.h"
 #include "systems/frame.h"
+#include "systems/receiver_kind.h"
 #include "systems/techniques/shadow_fields/combine_cpu.h"
 
 #include <map>
@@ -38,12 +39,22 @@ public:
     Result<std::map<std::string, double>> timePasses(Kernel kernel);
 
     Result<void> resize(VkExtent2D extent);
+
+    // From the next frame on. Vertices at first.
+    Result<void> setReceivers(ReceiverKind kind);
+    [[nodiscard]] ReceiverKind receivers() const { return m_receivers; }
+    // Of pixels that receive; null where vertices do.
+    [[nodiscard]] const PixelReceivers* pixels() const { return m_pixels ? &*m_pixels : nullptr; }
     [[nodiscard]] VkExtent2D extent() const { return m_targets.display.extent; }
 
     // Of the last finished frame.
     Result<Image8> capture() const;
-    Result<std::vector<vec4>> radiance() const; // [SceneData::radianceCount]
+    // [radianceCount()] of the receivers: SceneData::radianceCount, or [height][width] where pixels
+    // receive, with 11 bits and 0 in the background.
+    Result<std::vector<vec4>> radiance() const;
+    [[nodiscard]] std::size_t radianceCount() const;
     Result<CullResult> cullResult() const;
+    Result<GbufferPixels> gbuffer() const { return readGbuffer(m_device, m_pixels->targets); }
 
     // Whether frames show the colours of surfaces, or the radiance of the receivers alone.
     void showSurfaces(bool show) { m_surfaces = show; }
@@ -59,6 +70,7 @@ public:
     [[nodiscard]] FrameRing& ring() { return m_ring; }
 
 private:
+    Result<void> createPixels();
     Renderer(const Device& device, const DemoScene& scene)
         : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground),
           m_exposure(scene.exposure)
@@ -68,6 +80,8 @@ private:
     FramePasses m_passes;
     FrameTargets m_targets;
     GpuScene m_scene;
+    std::optional<PixelReceivers> m_pixels; // names the scene's buffers
+    ReceiverKind m_receivers = ReceiverKind::Vertex;
     FrameRing m_ring;
     EnvironmentLighting m_lighting;
     float m_exposure;

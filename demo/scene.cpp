@@ -14,6 +14,8 @@ namespace penumbra {
 std::span<const SceneEntry> sceneEntries()
 {
     static constexpr SceneEntry kScenes[] = {
+        {"coarse", "scene falling on a floor of two triangles: see it with --receivers pixel",
+         loadCoarseScene},
         {"falling", "20 objects of 8 shapes fall on a floor, collide and come to rest",
          loadFallingScene},
         {"lights", "two coloured spheres and a picture that shines move among objects",
@@ -54,7 +56,7 @@ Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, s
             intensity);
         !sky)
         return sky.error();
-    Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / "floor.glb");
+    Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / (options.floor + ".glb"));
     if (!floor)
         return floor.error();
     scene->world.create(Transform{}, MeshInstance{*floor},

@@ -29,6 +29,7 @@ struct SceneOptions {
     std::uint64_t seed = 1;
     std::string
         environment; // name of a .env in `assets`, for the first of the scene; empty: its own
+    std::string floor = "floor"; // name of a .glb in `assets`
 };
 
 struct SceneEntry {
@@ -41,7 +42,7 @@ std::span<const SceneEntry> sceneEntries();
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
 
 // A scene on the floor, which lies in the light: the sky that the options ask for, else
-// `environment`, and floor.glb. Error: one of them is missing or damaged.
+// `environment`, and `floor`. Error: one of them is missing or damaged.
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
                                                   const std::string& environment,
                                                   float intensity = 1);

@@ -8,7 +8,7 @@ namespace {
 
 Result<std::vector<vec3>> drawWith(Renderer& renderer, const View& view, float radiance)
 {
-    const std::vector<vec4> all(renderer.scene().data().radianceCount, vec4(vec3(radiance), 1));
+    const std::vector<vec4> all(renderer.radianceCount(), vec4(vec3(radiance), 1));
     if (Result<void> set = renderer.setRadiance(all); !set)
         return set.error();
     if (Result<void> drawn = renderer.drawFrame(view, Kernel::Exact, false); !drawn)

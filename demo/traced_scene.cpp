@@ -1,5 +1,7 @@
 #include "demo/traced_scene.h"
 
+#include "shaders/shared/pixel.h"
+
 namespace penumbra {
 
 mat4 worldFromObject(const GpuInstance& g)
@@ -7,6 +9,22 @@ mat4 worldFromObject(const GpuInstance& g)
     return glm::transpose(
         mat4(g.worldFromObject0, g.worldFromObject1, g.worldFromObject2, vec4(0, 0, 0, 1)));
 }
+
+namespace {
+
+ReferenceReceiver referenceReceiver(const GpuInstance& g, std::uint32_t instance, uvec4 geometry,
+                                    vec3 eye)
+{
+    const Receiver shaded = makeReceiver(g, geometry, eye);
+    ReferenceReceiver r;
+    r.position = shaded.position;
+    r.normal = normalize(shaded.normal);
+    r.toEye = normalize(eye - r.position);
+    r.material = r.instance = instance;
+    return r;
+}
+
+} // namespace
 
 Result<TracedScene> traceable(const SceneData& data, const CpuInstances& rows,
                               std::span<const MeshAsset* const> meshes)
@@ -52,17 +70,29 @@ Receivers visibleReceivers(const SceneData& data, const CpuInstances& rows,
         for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
             if (cluster.firstReceiver + v >= mesh.firstReceiver + mesh.vertexCount)
                 break; // padding
-            const vec3 eye(constants.eye);
-            const Receiver shaded =
-                makeReceiver(g, data.receivers[cluster.firstReceiver + v].geometry, eye);
-            ReferenceReceiver r;
-            r.position = shaded.position;
-            r.normal = normalize(shaded.normal);
-            r.toEye = normalize(eye - r.position);
-            r.material = r.instance = cluster.instance;
-            out.receivers.push_back(r);
+            out.receivers.push_back(referenceReceiver(
+                g, cluster.instance, data.receivers[cluster.firstReceiver + v].geometry,
+                vec3(constants.eye)));
             out.radianceIndex.push_back(cluster.firstRadiance + v);
         }
+    }
+    return out;
+}
+
+Receivers pixelReceivers(const SceneData& data, const CpuInstances& rows,
+                         const FrameConstants& constants, const GbufferPixels& pixels)
+{
+    Receivers out;
+    for (std::size_t i = 0; i < pixels.instances.size(); ++i) {
+        const std::uint32_t instance = pixels.instances[i];
+        if (instance == kBackground)
+            continue;
+        const SceneInstance& shown = data.instances[instance];
+        if (shown.emission * data.meshes[shown.mesh].emission != vec3(0))
+            continue;
+        out.receivers.push_back(referenceReceiver(
+            rows.instances[instance], instance, pixels.receivers[i].geometry, vec3(constants.eye)));
+        out.radianceIndex.push_back(static_cast<std::uint32_t>(i));
     }
     return out;
 }

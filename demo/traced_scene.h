@@ -2,6 +2,7 @@
 #pragma once
 
 #include "demo/reference/reference.h"
+#include "systems/pixel_receivers.h"
 #include "systems/techniques/shadow_fields/combine_cpu.h"
 
 namespace penumbra {
@@ -28,6 +29,10 @@ struct Receivers {
 
 Receivers visibleReceivers(const SceneData& data, const CpuInstances& rows,
                            const FrameConstants& constants);
+
+// Every pixel of the G-buffer, but of surfaces that shine.
+Receivers pixelReceivers(const SceneData& data, const CpuInstances& rows,
+                         const FrameConstants& constants, const GbufferPixels& pixels);
 
 std::vector<vec3> atReceivers(std::span<const vec4> radiance, const Receivers& receivers);
 

@@ -49,6 +49,7 @@ struct Controls {
     bool paused = false, restart = false, panel = true, nextSky = false;
     PaintKeys paint;
     Kernel kernel = Kernel::Exact;
+    ReceiverKind receivers = ReceiverKind::Vertex;
 };
 
 constexpr float kRadiansPerPixel = 0.006f;
@@ -105,6 +106,8 @@ void onKey(GLFWwindow* window, int key, int, int action, int)
         c.paint.toggle = !c.paint.toggle;
     else if (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)
         c.paint.factor *= key == GLFW_KEY_UP ? 2.0f : 0.5f;
+    else if (key == GLFW_KEY_P)
+        c.receivers = static_cast<ReceiverKind>((static_cast<int>(c.receivers) + 1) % 3);
 }
 
 // The cursor in clip space, +Y up.
@@ -219,15 +222,17 @@ void drawPanel(Editor& editor, Controls& controls, Show& show)
 // Frames per second in the title, twice a second.
 class TitleClock {
 public:
-    void frame(GLFWwindow* window, const std::string& scene, Kernel kernel)
+    void frame(GLFWwindow* window, const std::string& scene, const Controls& controls)
     {
         ++m_frames;
         const double seconds = std::chrono::duration<double>(Clock::now() - m_start).count();
         if (seconds < 0.5)
             return;
-        glfwSetWindowTitle(window, fmt::format("Penumbra - {} - {} - {:.0f} fps", scene,
-                                               kernelName(kernel), m_frames / seconds)
-                                       .c_str());
+        glfwSetWindowTitle(window,
+                           fmt::format("Penumbra - {} - {} - {} - {:.0f} fps", scene,
+                                       kernelName(controls.kernel),
+                                       receiverKindName(controls.receivers), m_frames / seconds)
+                               .c_str());
         m_frames = 0;
         m_start = Clock::now();
     }
@@ -270,7 +275,8 @@ Result<void> runWindow(const DemoOptions& options)
     if (!swapchain)
         return swapchain.error();
 
-    Controls controls{.camera = show->scene->camera, .kernel = options.kernel};
+    Controls controls{
+        .camera = show->scene->camera, .kernel = options.kernel, .receivers = options.receivers};
     glfwSetWindowUserPointer(window, &controls);
     glfwSetCursorPosCallback(window, onCursor);
     glfwSetScrollCallback(window, onScroll);
@@ -280,7 +286,8 @@ Result<void> runWindow(const DemoOptions& options)
     if (!overlay)
         return overlay.error();
     Editor editor;
-    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: kernel\n"
+    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
+               "kernel, P: receivers\n"
                "left/right: turn the sky, page up/down: its brightness, E: next sky\n"
                "G: gloss of the object under the cursor, up/down: its exponent\n"
                "Tab: editor, Esc: quit\n");
@@ -308,6 +315,9 @@ Result<void> runWindow(const DemoOptions& options)
         if (extent.width != renderer.extent().width || extent.height != renderer.extent().height)
             if (Result<void> sized = renderer.resize(extent); !sized)
                 return sized;
+        if (renderer.receivers() != controls.receivers)
+            if (Result<void> set = renderer.setReceivers(controls.receivers); !set)
+                return set;
 
         const auto now = std::chrono::steady_clock::now();
         const float seconds = std::chrono::duration<float>(now - last).count();
@@ -341,7 +351,7 @@ Result<void> runWindow(const DemoOptions& options)
             return ended;
         if (Result<void> shown = swapchain->present(); !shown)
             return shown;
-        title.frame(window, show->scene->name, controls.kernel);
+        title.frame(window, show->scene->name, controls);
         ++frames;
     }
     if (Result<void> idle = show->renderer->ring().waitIdle(); !idle)

@@ -32,7 +32,7 @@ void drawPlain(const GpuFrame& gpu, const GpuScene& scene, std::uint32_t instanc
 }
 
 void drawSurface(const GpuFrame& gpu, const Pipeline& pipeline, const GpuScene& scene,
-                 std::uint32_t index)
+                 VkDescriptorSet set, std::uint32_t index)
 {
     const SceneInstance& instance = scene.data().instances[index];
     const SurfaceRange& surface = scene.data().meshes[instance.mesh].surface;
@@ -42,7 +42,7 @@ void drawSurface(const GpuFrame& gpu, const Pipeline& pipeline, const GpuScene& 
     vkCmdBindVertexBuffers(gpu.cmd, 3, 1, &vertices, &offset);
     for (std::uint32_t p = 0; p < surface.partCount; ++p) {
         const std::uint32_t part = surface.firstPart + p;
-        bindAndPush(gpu.cmd, pipeline, scene.slot(gpu.slot).set,
+        bindAndPush(gpu.cmd, pipeline, set,
                     surfacePush(instance, scene.data().surfaces.parts[part]));
         bindDrawSet(gpu.cmd, pipeline, scene.surfaces().set(part));
         drawIndirect(gpu, scene, scene.data().firstDraw[index] + p);
@@ -51,20 +51,20 @@ void drawSurface(const GpuFrame& gpu, const Pipeline& pipeline, const GpuScene& 
 
 } // namespace
 
-void drawInstances(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                   bool surfaces)
+void drawInstances(const GpuFrame& gpu, const RasterPasses& passes, const GpuScene& scene,
+                   VkDescriptorSet set, bool surfaces)
 {
     const std::vector<SceneInstance>& instances = scene.data().instances;
     const auto isPlain = [&](const SceneInstance& instance) {
         return !surfaces || scene.data().meshes[instance.mesh].surface.plain();
     };
-    bind(gpu.cmd, passes.raster, scene.slot(gpu.slot).set, nullptr, 0);
+    bind(gpu.cmd, passes.plain, set, nullptr, 0);
     for (std::uint32_t i = 0; i < instances.size(); ++i)
         if (isPlain(instances[i]))
             drawPlain(gpu, scene, i);
     for (std::uint32_t i = 0; i < instances.size(); ++i)
         if (!isPlain(instances[i]))
-            drawSurface(gpu, passes.rasterSurface, scene, i);
+            drawSurface(gpu, passes.surface, scene, set, i);
 }
 
 GraphicsDesc surfaceDesc(GraphicsDesc raster)

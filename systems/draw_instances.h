@@ -6,9 +6,10 @@
 
 namespace penumbra {
 
-// Inside the rendering of pass raster, with the index buffer bound. `surfaces`: see FrameOptions.
-void drawInstances(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                   bool surfaces);
+// Inside the rendering of pass raster, with the index buffer bound. `set`: of layout
+// sceneBindings(). `surfaces`: see FrameOptions.
+void drawInstances(const GpuFrame& gpu, const RasterPasses& passes, const GpuScene& scene,
+                   VkDescriptorSet set, bool surfaces);
 
 // raster_surface from raster: vertex buffer 3, set 1 and push constants more.
 GraphicsDesc surfaceDesc(GraphicsDesc raster);

@@ -62,13 +62,30 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
     scene.writeFrame(gpu.slot, frame);
     recordInstanceUpdate(gpu, passes, scene);
     recordClusterCull(gpu, passes, scene);
-    recordEntitySort(gpu, passes, scene);
+    if (options.pixels) {
+        computeToGraphics(gpu.cmd);
+        recordGbuffer(gpu, *options.pixels, scene, targets.depth);
+        recordPixelClusters(gpu, *options.pixels);
+        recordPixelBounds(gpu, *options.pixels);
+    }
+    const ReceiverClusters receivers = receiverClusters(gpu, scene, options.pixels);
+    recordEntitySort(gpu, passes, receivers);
     if (options.combine)
-        recordCombine(gpu, passes, scene, options.kernel);
+        recordCombine(gpu, passes, receivers, options.kernel);
+    if (options.combine && options.pixels)
+        recordPixelResolve(gpu, *options.pixels);
     computeToGraphics(gpu.cmd);
 
-    recordRaster(gpu, passes, scene, targets, options.surfaces);
+    recordRaster(gpu, passes, scene, targets, options.surfaces, options.pixels);
     recordPost(gpu, passes, targets, options.exposure);
+}
+
+ReceiverClusters receiverClusters(const GpuFrame& gpu, const GpuScene& scene,
+                                  const PixelReceivers* pixels)
+{
+    if (pixels)
+        return {pixels->targets.sceneSets[gpu.slot], pixels->targets.cull.handle};
+    return {scene.slot(gpu.slot).set, scene.buffers().cull.handle};
 }
 
 void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
@@ -95,25 +112,25 @@ void recordClusterCull(const GpuFrame& gpu, const FramePasses& passes, const Gpu
     computeToIndirect(gpu.cmd);
 }
 
-void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
+void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes,
+                      const ReceiverClusters& receivers)
 {
     const GpuZone zone(gpu.cmd, "entity_sort");
-    bind(gpu.cmd, passes.entitySort, scene.slot(gpu.slot).set, nullptr, 0);
-    vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle, offsetof(CullResult, sortGroups));
+    bind(gpu.cmd, passes.entitySort, receivers.set, nullptr, 0);
+    vkCmdDispatchIndirect(gpu.cmd, receivers.cull, offsetof(CullResult, sortGroups));
     computeToIndirect(gpu.cmd);
 }
 
-void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                   Kernel kernel)
+void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
+                   const ReceiverClusters& receivers, Kernel kernel)
 {
     const GpuZone zone(gpu.cmd, "combine");
-    bind(gpu.cmd, passes.combine(kernel), scene.slot(gpu.slot).set, nullptr, 0);
-    vkCmdDispatchIndirect(gpu.cmd, scene.buffers().cull.handle,
-                          offsetof(CullResult, combineGroups));
+    bind(gpu.cmd, passes.combine(kernel), receivers.set, nullptr, 0);
+    vkCmdDispatchIndirect(gpu.cmd, receivers.cull, offsetof(CullResult, combineGroups));
 }
 
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                  const FrameTargets& targets, bool surfaces)
+                  const FrameTargets& targets, bool surfaces, const PixelReceivers* pixels)
 {
     const GpuZone zone(gpu.cmd, "raster");
     transitionImage(gpu.cmd, targets.radiance.handle, targets.radiance.aspect, kUndefinedImage,
@@ -122,7 +139,8 @@ void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene
                     kDepthTarget);
     beginRendering(gpu.cmd, targets);
     vkCmdBindIndexBuffer(gpu.cmd, scene.buffers().indices.handle, 0, VK_INDEX_TYPE_UINT32);
-    drawInstances(gpu, passes, scene, surfaces);
+    drawInstances(gpu, pixels ? passes.rasterPixels : passes.raster, scene,
+                  receiverClusters(gpu, scene, pixels).set, surfaces);
     bind(gpu.cmd, passes.background, scene.slot(gpu.slot).set, nullptr, 0);
     vkCmdDraw(gpu.cmd, 3, 1, 0, 0);
     vkCmdEndRendering(gpu.cmd);
@@ -193,6 +211,7 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
     GraphicsDesc raster{.name = "raster",
                         .vertexShader = "raster.vert",
                         .fragmentShader = "raster.frag",
+                        .constants = {0},
                         .vertexBindings = {{0, sizeof(ReceiverTexels), kPerVertex},
                                            {1, sizeof(vec4), kPerVertex},
                                            {2, sizeof(GpuInstance), kPerInstance}},
@@ -201,8 +220,11 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
                                              {2, 2, kVec4, kRow0},
                                              {3, 2, kVec4, kRow0 + 16},
                                              {4, 2, kVec4, kRow0 + 32}}};
-    graphics(passes.raster, raster);
-    graphics(passes.rasterSurface, surfaceDesc(raster));
+    graphics(passes.raster.plain, raster);
+    graphics(passes.raster.surface, surfaceDesc(raster));
+    raster.constants = {1}; // shaders/pixel_radiance.glsl
+    graphics(passes.rasterPixels.plain, raster);
+    graphics(passes.rasterPixels.surface, surfaceDesc(raster));
     graphics(passes.background, {.name = "background",
                                  .vertexShader = "background.vert",
                                  .fragmentShader = "background.frag",

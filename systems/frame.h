@@ -7,14 +7,21 @@
 #include "runtime/vk/pipeline.h"
 #include "systems/frame_constants.h"
 #include "systems/gpu_scene.h"
+#include "systems/pixel_receivers.h"
 #include "systems/techniques/shadow_fields/kernel.h"
 
 namespace penumbra {
 
+// Pass raster: instances of one colour, and those with textures or several materials.
+struct RasterPasses {
+    Pipeline plain, surface;
+};
+
 // Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
 struct FramePasses {
-    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, raster,
-        rasterSurface, background, post;
+    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, background,
+        post;
+    RasterPasses raster, rasterPixels; // radiance of vertices, of pixels
     [[nodiscard]] const Pipeline& combine(Kernel kernel) const
     {
         return kernel == Kernel::Literal ? combineLiteral : combineExact;
@@ -41,6 +48,7 @@ struct FrameOptions {
     bool combine = true; // false: the radiance buffer is given from outside (reference, cpu-scalar)
     float exposure = 1;
     bool surfaces = true; // false: the picture is the radiance of the receivers, nothing else
+    const PixelReceivers* pixels = nullptr; // of the targets' size; null: vertices receive light
 };
 
 // Records everything from changed instances to `targets.display`.
@@ -48,14 +56,24 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
                  const FrameConstants& constants, const FrameOptions& options,
                  const FrameTargets& targets);
 
+// Clusters of receivers that entity_sort and combine work on.
+struct ReceiverClusters {
+    VkDescriptorSet set = VK_NULL_HANDLE; // of layout sceneBindings()
+    VkBuffer cull = VK_NULL_HANDLE;       // CullResult
+};
+ReceiverClusters receiverClusters(const GpuFrame& gpu, const GpuScene& scene,
+                                  const PixelReceivers* pixels);
+
 // The parts. Each takes and leaves the targets as the next one wants them.
 void recordInstanceUpdate(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
 void recordClusterCull(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
-void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
-void recordCombine(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                   Kernel kernel);
+void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes,
+                      const ReceiverClusters& receivers);
+void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
+                   const ReceiverClusters& receivers, Kernel kernel);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
-                  const FrameTargets& targets, bool surfaces = true);
+                  const FrameTargets& targets, bool surfaces = true,
+                  const PixelReceivers* pixels = nullptr);
 void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTargets& targets,
                 float exposure);
 

@@ -38,6 +38,8 @@ constexpr Binding kBindings[] = {
     {19, kStorage},
     {kFirstSkyBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
     {kFirstSkyBinding + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kPixelRadianceBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+     VK_SHADER_STAGE_FRAGMENT_BIT},
 };
 
 // Creates buffers until one fails, and remembers why.
@@ -185,36 +187,51 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
 
     scene.m_layout = createSetLayout(device, sceneBindings());
     scene.m_sets = DescriptorSets(device);
-    for (GpuSceneSlot& slot : scene.m_slots) {
+    for (std::uint32_t i = 0; i < framesInFlight; ++i) {
+        GpuSceneSlot& slot = scene.m_slots[i];
         slot.set = scene.m_sets.allocate(scene.m_layout);
-        DescriptorWriter(device, slot.set)
-            .uniformBuffer(0, slot.frame.handle)
-            .storageBuffer(1, slot.inputs.handle)
-            .storageBuffer(2, b.fields.handle)
-            .storageBuffer(3, slot.changed.handle)
-            .storageBuffer(4, b.instances.handle)
-            .texels(5, b.instances.texels)
-            .texels(6, b.fieldSamples.texels)
-            .texels(7, b.receivers.texels)
-            .storageBuffer(8, b.bounds.handle)
-            .storageBuffer(9, b.clusters.handle)
-            .storageBuffer(10, b.cull.handle)
-            .storageBuffer(11, b.visible.handle)
-            .texels(12, b.visible.texels)
-            .storageBuffer(13, b.lists.handle)
-            .texels(14, b.lists.texels)
-            .storageBuffer(15, b.radiance.handle)
-            .storageBuffer(16, b.drawCommands.handle)
-            .storageBuffer(17, b.denseRotations.handle)
-            .storageBuffer(18, b.fieldSamples.handle)
-            .storageBuffer(19, b.receivers.handle)
-            .write();
-        scene.m_skies.bind(slot.set, slot.skies);
+        scene.writeSet(
+            device, slot.set, i,
+            {b.receivers, b.bounds, b.clusters, b.cull, b.visible, b.lists, b.radiance, nullptr});
     }
     scene.m_isChanged.assign(rows, false);
     scene.m_data = std::move(data);
     scene.touchAll();
     return scene;
+}
+
+void GpuScene::writeSet(const Device& device, VkDescriptorSet set, std::uint32_t slotIndex,
+                        const ReceiverBuffers& receivers) const
+{
+    const GpuSceneSlot& slot = m_slots[slotIndex];
+    const GpuSceneBuffers& b = m_buffers;
+    DescriptorWriter(device, set)
+        .uniformBuffer(0, slot.frame.handle)
+        .storageBuffer(1, slot.inputs.handle)
+        .storageBuffer(2, b.fields.handle)
+        .storageBuffer(3, slot.changed.handle)
+        .storageBuffer(4, b.instances.handle)
+        .texels(5, b.instances.texels)
+        .texels(6, b.fieldSamples.texels)
+        .texels(7, receivers.receivers.texels)
+        .storageBuffer(8, receivers.bounds.handle)
+        .storageBuffer(9, receivers.clusters.handle)
+        .storageBuffer(10, receivers.cull.handle)
+        .storageBuffer(11, receivers.visible.handle)
+        .texels(12, receivers.visible.texels)
+        .storageBuffer(13, receivers.lists.handle)
+        .texels(14, receivers.lists.texels)
+        .storageBuffer(15, receivers.radiance.handle)
+        .storageBuffer(16, b.drawCommands.handle)
+        .storageBuffer(17, b.denseRotations.handle)
+        .storageBuffer(18, b.fieldSamples.handle)
+        .storageBuffer(19, receivers.receivers.handle)
+        .write();
+    // Every sampler is bound, also where no pass reads it: lavapipe reads descriptors that were
+    // never written.
+    GpuSkies::Views unbound{};
+    m_skies.bind(set, unbound);
+    m_skies.bindImage(set, kPixelRadianceBinding, receivers.pixelRadiance);
 }
 
 void GpuScene::setInstance(std::uint32_t index, const SceneInstance& instance)

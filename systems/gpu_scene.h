@@ -34,6 +34,12 @@ struct GpuSceneSlot {
     GpuSkies::Views skies{}; // in `set`
 };
 
+// What the passes from entity_sort on work with: clusters of receivers, and the radiance of these.
+struct ReceiverBuffers {
+    const Buffer &receivers, &bounds, &clusters, &cull, &visible, &lists, &radiance;
+    const Image* pixelRadiance; // what pass raster shows; null: interpolated vertex radiance
+};
+
 class GpuScene {
 public:
     // Uploads everything. Keeps `data` for the CPU paths. `sky` is drawn behind the scene; without
@@ -54,6 +60,11 @@ public:
     // rows, the maps of the background.
     void writeFrame(std::uint32_t slot, const FrameConstants& constants);
 
+    // Fills a set of layout sceneBindings() for the frames of `slot`, with these receivers, and
+    // without the background's map. What it names outlives the set's use.
+    void writeSet(const Device& device, VkDescriptorSet set, std::uint32_t slot,
+                  const ReceiverBuffers& receivers) const;
+
     // All rows count as changed: after another kernel was chosen, which needs other constants.
     void touchAll();
 
@@ -61,6 +72,10 @@ public:
     [[nodiscard]] const GpuSceneBuffers& buffers() const { return m_buffers; }
     [[nodiscard]] const GpuSurfaces& surfaces() const { return m_surfaces; }
     [[nodiscard]] const GpuSceneSlot& slot(std::uint32_t index) const { return m_slots[index]; }
+    [[nodiscard]] std::uint32_t slotCount() const
+    {
+        return static_cast<std::uint32_t>(m_slots.size());
+    }
 
 private:
     void touch(std::uint32_t row);

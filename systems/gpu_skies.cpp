@@ -81,6 +81,12 @@ void GpuSkies::bind(VkDescriptorSet set, Views& bound) const
     bound = m_views;
 }
 
+void GpuSkies::bindImage(VkDescriptorSet set, std::uint32_t binding, const Image* image) const
+{
+    const VkImageView view = image != nullptr ? VkImageView{image->view} : m_views[0];
+    DescriptorWriter(*m_device, set).sampledImage(binding, view, m_sampler).write();
+}
+
 void GpuSkies::fill(FrameConstants& frame) const
 {
     for (std::size_t i = 0; i < kSkyMaps; ++i) {

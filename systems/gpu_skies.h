@@ -13,6 +13,7 @@
 namespace penumbra {
 
 inline constexpr std::uint32_t kFirstSkyBinding = 20; // kSkyMaps of them
+inline constexpr std::uint32_t kPixelRadianceBinding = 30;
 
 // A map as it is drawn.
 struct SkyMap {
@@ -38,6 +39,8 @@ public:
 
     // Binds the maps to `set`, which no frame in flight uses, unless `bound` says that they are.
     void bind(VkDescriptorSet set, Views& bound) const;
+    // Another image beside them, read at its texels; null: any map, for a pass that reads none.
+    void bindImage(VkDescriptorSet set, std::uint32_t binding, const Image* image) const;
     void fill(FrameConstants& frame) const; // skyRotation, skyIntensity
 
 private:

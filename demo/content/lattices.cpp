@@ -113,4 +113,11 @@ ContentMesh makeFloor(const FloorShape& shape)
     return builder.finish("floor", 40, MeshBuilder::Origin::AsBuilt);
 }
 
+ContentMesh makeCoarseFloor()
+{
+    ContentMesh mesh = makeFloor({.cellsX = 1, .cellsZ = 1});
+    mesh.name = "floor_coarse";
+    return mesh;
+}
+
 } // namespace penumbra

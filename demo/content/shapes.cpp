@@ -12,6 +12,7 @@ std::span<const ContentShape> contentShapes()
         ContentShape{"bowling_pin", "a ten-pin bowling pin, USBC profile", makeBowlingPin},
         ContentShape{"chess_pawn", "a Staunton pawn", makeChessPawn},
         ContentShape{"floor", "a plate of 96 x 96 cells, top at y = 0", [] { return makeFloor(); }},
+        ContentShape{"floor_coarse", "the same plate, its top two triangles", makeCoarseFloor},
         ContentShape{"gear", "a spur gear with bore, hub and rim", makeGear},
         ContentShape{"hex_nut", "a chamfered nut with a helical thread", makeHexNut},
         ContentShape{"mug", "a mug with handle and inside", makeMug},

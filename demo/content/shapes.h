@@ -30,6 +30,7 @@ struct FloorShape {
     int cellsX = 160, cellsZ = 160; // 5 cm: contact shadows between vertices are no finer
 };
 ContentMesh makeFloor(const FloorShape& shape = {}); // the origin is the middle of the top
+ContentMesh makeCoarseFloor();                       // its top is two triangles
 
 struct ContentShape {
     std::string_view name; // also the mesh's name

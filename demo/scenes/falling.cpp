@@ -164,4 +164,14 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
     return scene;
 }
 
+Result<std::unique_ptr<DemoScene>> loadCoarseScene(const SceneOptions& options)
+{
+    SceneOptions coarse = options;
+    coarse.floor = "floor_coarse";
+    Result<std::unique_ptr<DemoScene>> scene = loadFallingScene(coarse);
+    if (scene)
+        (*scene)->name = "coarse";
+    return scene;
+}
+
 } // namespace penumbra

@@ -8,4 +8,7 @@ namespace penumbra {
 
 Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options);
 
+// The same on a floor of two triangles, which only pixel receivers show right.
+Result<std::unique_ptr<DemoScene>> loadCoarseScene(const SceneOptions& options);
+
 } // namespace penumbra

@@ -33,8 +33,9 @@ Result<double> FieldCombiner::run(const FrameConstants& constants, Kernel kernel
         const GpuFrame gpu{.cmd = cmd, .slot = 0};
         recordInstanceUpdate(gpu, m_passes, m_scene);
         recordClusterCull(gpu, m_passes, m_scene);
-        recordEntitySort(gpu, m_passes, m_scene);
-        recordCombine(gpu, m_passes, m_scene, kernel);
+        const ReceiverClusters receivers = receiverClusters(gpu, m_scene, nullptr);
+        recordEntitySort(gpu, m_passes, receivers);
+        recordCombine(gpu, m_passes, receivers, kernel);
     });
     if (!done)
         return done.error();

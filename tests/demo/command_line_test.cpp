@@ -31,18 +31,28 @@ protected:
 
 TEST_F(DemoCommandLine, WrongUsageIsTwo)
 {
-    for (const std::string& arguments :
-         {std::string("--size 12"), std::string("--size 8x8"), std::string("--frames x"),
-          std::string("--frames 0"), "--record " + at("film.avi"), std::string("--kernel fast"),
-          std::string("--reference 3"), std::string("--what"), std::string("falling"),
-          "--compare-kernels " + at("k.json") + " --reference",
-          "--compare-kernels " + at("k.json") + " --out " + at("o"),
-          "--compare-kernels " + at("k.json") + " --kernel exact", std::string("--sweep shadows"),
-          std::string("--sweep"), std::string("--sweep lights --reference"),
-          std::string("--sweep lights --scene lights"),
-          std::string("--sweep lights --kernel exact"),
-          std::string("--sweep lights --device cpu-scalar"),
-          "--sweep lights --compare-kernels " + at("k.json")}) {
+    for (const std::string& arguments : {std::string("--size 12"),
+                                         std::string("--size 8x8"),
+                                         std::string("--frames x"),
+                                         std::string("--frames 0"),
+                                         "--record " + at("film.avi"),
+                                         std::string("--kernel fast"),
+                                         std::string("--receivers pixels"),
+                                         std::string("--receivers pixel --device cpu-scalar"),
+                                         "--receivers pixel --compare-kernels " + at("k.json"),
+                                         std::string("--reference 3"),
+                                         std::string("--what"),
+                                         std::string("falling"),
+                                         "--compare-kernels " + at("k.json") + " --reference",
+                                         "--compare-kernels " + at("k.json") + " --out " + at("o"),
+                                         "--compare-kernels " + at("k.json") + " --kernel exact",
+                                         std::string("--sweep shadows"),
+                                         std::string("--sweep"),
+                                         std::string("--sweep lights --reference"),
+                                         std::string("--sweep lights --scene lights"),
+                                         std::string("--sweep lights --kernel exact"),
+                                         std::string("--sweep lights --device cpu-scalar"),
+                                         "--sweep lights --compare-kernels " + at("k.json")}) {
         const Outcome outcome = run(arguments);
         EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
         EXPECT_FALSE(outcome.err.empty()) << arguments;
@@ -99,6 +109,27 @@ TEST(DemoOptions, SweepIsHeadless)
     EXPECT_EQ(options.sweep, "lights");
     EXPECT_EQ(options.out, "there");
     EXPECT_TRUE(options.headless);
+}
+
+// Pixels are receivers of the benchmark and of the reference alike, and validation has nothing to
+// say.
+TEST_F(DemoCommandLine, PixelReceiversAreMeasured)
+{
+    for (const std::string kind : {"pixel", "pixel-half"}) {
+        const Outcome outcome = run("--scene coarse --receivers " + kind +
+                                    " --frames 1 --size 70x50 --validate --reference 16 --out " +
+                                    at(kind) + " --benchmark " + at("b.json"));
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const auto benchmark = nlohmann::json::parse(readText(folder / "b.json"));
+        EXPECT_EQ(benchmark["receivers"], kind);
+        for (const char* pass : {"gbuffer", "pixel_clusters", "pixel_bounds", "pixel_resolve"})
+            EXPECT_GT(benchmark["gpuMs"][pass], 0) << pass;
+        const auto reference = nlohmann::json::parse(readText(folder / kind / "reference.json"));
+        EXPECT_EQ(reference["receiverKind"], kind);
+        EXPECT_GT(reference["receivers"], 1000);
+        EXPECT_LE(reference["receivers"], 70 * 50);
+        EXPECT_LT(reference["rmseRelative"], 0.2);
+    }
 }
 
 // The scalar path is compared as it is, not redrawn by the device.
