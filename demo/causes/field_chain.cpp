@@ -30,7 +30,7 @@ std::vector<ChainReceiver> chooseReceivers(const FieldChainInput& in,
         const SceneCluster& cluster = in.data.clusters[visible[i].cluster];
         const SceneInstance& instance = in.data.instances[cluster.instance];
         const MeshRange& mesh = in.data.meshes[instance.mesh];
-        if (instance.emission != vec3(0))
+        if (instance.emission * mesh.emission != vec3(0))
             continue;
         for (std::uint32_t v = 0; v < kClusterReceivers; v += kClusterReceivers / kPerCluster)
             if (cluster.firstReceiver + v < mesh.firstReceiver + mesh.vertexCount)
