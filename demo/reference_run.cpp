@@ -201,11 +201,11 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     nlohmann::ordered_json causes{{"lightBandLimit", figures.lightBandLimit},
                                   {"fieldsAndProducts", figures.fieldsAndProducts}};
     if (!renderer.pixels()) {
-        if (Result<void> added =
-                addChain(causes,
-                         {data, rows, scene.assets.meshes(), traced->scene,
-                          renderer.constants(view), kernel, skyRadiance, 512, options.samples},
-                         figures);
+        if (Result<void> added = addChain(causes,
+                                          {data, rows, scene.assets.meshes(), traced->scene,
+                                           renderer.constants(view), kernel, skyRadiance, 256,
+                                           std::min(options.samples, 512u)},
+                                          figures);
             !added)
             return added;
         causes["vertexInterpolation"] = interpolationError(*traced, scene, camera, options.samples);

@@ -145,8 +145,6 @@ private:
     template <class Mark>
     static void forWritten(const Match& match, Mark&& mark); // mark(kRowChanges, column)
 
-    template <size_t... p>
-    static void prefetch(const Match& match, uint32_t row, std::index_sequence<p...>);
     // Pointers into all columns of all data terms, flat; as a tuple, to row `row`.
     template <size_t p>
     static auto pointer(const Match& match, std::byte* const* columnsAt, size_t row);

@@ -156,23 +156,6 @@ void Query<Terms...>::callRow(F& f, [[maybe_unused]] const Entity* entities,
     (std::get<k>(arguments).template store<Flat::first(k)>(columns, row), ...);
 }
 
-// The processor sees by itself how a walk through memory goes on, but not that it goes on in
-// another block: the first lines of its columns are fetched while the rows before are handled.
-template <class... Terms>
-template <size_t... p>
-[[gnu::always_inline]] inline void Query<Terms...>::prefetch([[maybe_unused]] const Match& match,
-                                                             [[maybe_unused]] uint32_t row,
-                                                             std::index_sequence<p...>)
-{
-    constexpr size_t kLine = 64, kLines = 4;
-    [[maybe_unused]] std::byte* const* const columnsAt = match.archetype->columnsAt(row);
-    [[maybe_unused]] const size_t inBlock = match.archetype->rowInBlock(row);
-    for (size_t line = 0; line < kLines; ++line) // as numbers: what is absent is null
-        (__builtin_prefetch(reinterpret_cast<const void*>(
-             reinterpret_cast<uintptr_t>(pointer<p>(match, columnsAt, inBlock)) + line * kLine)),
-         ...);
-}
-
 // Its own function because the compiler trusts __restrict on parameters alone: without it, loops
 // over more than a few columns do not vectorise.
 template <class... Terms>
@@ -232,8 +215,6 @@ template <class F>
     m_cache->resolve(match);
     markAll(match);
     for (uint32_t row = 0; row < archetype.count(); row += archetype.blockRows()) {
-        if (const uint32_t next = row + archetype.blockRows(); next < archetype.count())
-            prefetch(match, next, FlatIndices());
         callRun(f, match, row, std::min(archetype.blockRows(), archetype.count() - row),
                 FlatIndices());
     }
