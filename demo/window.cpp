@@ -1,11 +1,10 @@
 #include "demo/window.h"
 
+#include "demo/controls.h"
 #include "demo/editor/editor.h"
 #include "demo/editor/overlay.h"
-#include "demo/paint.h"
 #include "demo/renderer.h"
 #include "demo/simulation.h"
-#include "demo/sky_control.h"
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/instance.h"
 #include "runtime/vk/swapchain.h"
@@ -41,101 +40,6 @@ struct Surface {
             vkDestroySurfaceKHR(instance, handle, nullptr);
     }
 };
-
-// What the mouse and keyboard change.
-struct Controls {
-    Camera camera;
-    double cursorX = 0, cursorY = 0;
-    bool paused = false, restart = false, panel = true, nextSky = false;
-    PaintKeys paint;
-    Kernel kernel = Kernel::Exact;
-    ReceiverKind receivers = ReceiverKind::Vertex;
-};
-
-constexpr float kRadiansPerPixel = 0.006f;
-
-void onCursor(GLFWwindow* window, double x, double y)
-{
-    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-    const auto dx = static_cast<float>(x - c.cursorX), dy = static_cast<float>(y - c.cursorY);
-    c.cursorX = x;
-    c.cursorY = y;
-    if (Overlay::wantsMouse())
-        return;
-    Camera& camera = c.camera;
-    if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
-        camera.yaw -= dx * kRadiansPerPixel;
-        camera.pitch =
-            std::clamp(camera.pitch + dy * kRadiansPerPixel, 0.02f, 1.5f); // stays above the floor
-    } else if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
-        const float metresPerPixel = camera.distance * 0.001f;
-        camera.target +=
-            metresPerPixel *
-            (-dx * vec3(std::cos(camera.yaw), 0, -std::sin(camera.yaw)) + dy * vec3(0, 1, 0));
-        camera.target.y = std::max(camera.target.y, 0.0f);
-    }
-}
-
-void onScroll(GLFWwindow* window, double, double steps)
-{
-    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-    if (Overlay::wantsMouse())
-        return;
-    c.camera.distance =
-        std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
-}
-
-void onKey(GLFWwindow* window, int key, int, int action, int)
-{
-    auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
-    if (action != GLFW_PRESS || Overlay::wantsKeyboard())
-        return;
-    if (key == GLFW_KEY_ESCAPE)
-        glfwSetWindowShouldClose(window, GLFW_TRUE);
-    else if (key == GLFW_KEY_SPACE)
-        c.paused = !c.paused;
-    else if (key == GLFW_KEY_R)
-        c.restart = true;
-    else if (key == GLFW_KEY_E)
-        c.nextSky = true;
-    else if (key == GLFW_KEY_K)
-        c.kernel = c.kernel == Kernel::Exact ? Kernel::Literal : Kernel::Exact;
-    else if (key == GLFW_KEY_TAB)
-        c.panel = !c.panel;
-    else if (key == GLFW_KEY_G)
-        c.paint.toggle = !c.paint.toggle;
-    else if (key == GLFW_KEY_UP || key == GLFW_KEY_DOWN)
-        c.paint.factor *= key == GLFW_KEY_UP ? 2.0f : 0.5f;
-    else if (key == GLFW_KEY_P)
-        c.receivers = static_cast<ReceiverKind>((static_cast<int>(c.receivers) + 1) % 3);
-}
-
-// The cursor in clip space, +Y up.
-vec2 cursorClip(GLFWwindow* window, const Controls& controls)
-{
-    int width = 0, height = 0;
-    glfwGetWindowSize(window, &width, &height);
-    return {2 * static_cast<float>(controls.cursorX) / static_cast<float>(std::max(width, 1)) - 1,
-            1 - 2 * static_cast<float>(controls.cursorY) / static_cast<float>(std::max(height, 1))};
-}
-
-// Keys that are held down turn the sky and make it brighter or darker.
-Result<void> controlSky(GLFWwindow* window, Controls& c, DemoScene& scene,
-                        const std::filesystem::path& assets, float seconds)
-{
-    constexpr float kRadiansPerSecond = 0.8f, kStopsPerSecond = 1.5f, kFadeSeconds = 2;
-    const auto direction = [&](int more, int less) {
-        const auto held = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1 : 0; };
-        return static_cast<float>(held(more) - held(less)) * seconds;
-    };
-    if (const float turn = direction(GLFW_KEY_RIGHT, GLFW_KEY_LEFT); turn != 0)
-        turnSky(scene.world, turn * kRadiansPerSecond);
-    if (const float brighter = direction(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN); brighter != 0)
-        scaleSky(scene.world, std::exp2(brighter * kStopsPerSecond));
-    if (std::exchange(c.nextSky, false))
-        return fadeToNextSky(scene, assets, kFadeSeconds);
-    return {};
-}
 
 VkExtent2D framebufferExtent(GLFWwindow* window)
 {
@@ -277,20 +181,13 @@ Result<void> runWindow(const DemoOptions& options)
 
     Controls controls{
         .camera = show->scene->camera, .kernel = options.kernel, .receivers = options.receivers};
-    glfwSetWindowUserPointer(window, &controls);
-    glfwSetCursorPosCallback(window, onCursor);
-    glfwSetScrollCallback(window, onScroll);
-    glfwSetKeyCallback(window, onKey);
+    listenTo(window, controls);
     Result<std::unique_ptr<Overlay>> overlay = Overlay::create(
         *device, window, show->renderer->display().format, show->renderer->ring().framesInFlight());
     if (!overlay)
         return overlay.error();
     Editor editor;
-    fmt::print("left drag: orbit, right drag: pan, wheel: zoom, space: pause, R: restart, K: "
-               "kernel, P: receivers\n"
-               "left/right: turn the sky, page up/down: its brightness, E: next sky\n"
-               "G: gloss of the object under the cursor, up/down: its exponent\n"
-               "Tab: editor, Esc: quit\n");
+    fmt::print("{}", kKeysText);
 
     TitleClock title;
     auto last = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// A window with an orbit camera. The only file that knows GLFW; headless runs never call it.
+// A window with an orbit camera. Headless runs never call it.
 #pragma once
 
 #include "demo/options.h"

@@ -239,25 +239,15 @@ Result<FrameTargets> createFrameTargets(const Device& device, const FramePasses&
                                         VkExtent2D extent)
 {
     FrameTargets targets;
-    const struct {
-        Image& image;
-        const char* name;
-        VkFormat format;
-        VkImageUsageFlags usage;
-    } images[] = {
+    const NamedImage images[] = {
         {targets.radiance, "radiance image", kRadianceFormat,
          VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
         {targets.depth, "depth image", kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
         {targets.display, "display image", kDisplayFormat,
          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
     };
-    for (const auto& [image, name, format, usage] : images) {
-        Result<Image> made =
-            createImage(device, {.name = name, .extent = extent, .format = format, .usage = usage});
-        if (!made)
-            return made.error();
-        image = std::move(*made);
-    }
+    if (Result<void> made = createImages(device, extent, images); !made)
+        return made.error();
     targets.sampler =
         createSampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     targets.sets = DescriptorSets(device);

@@ -30,26 +30,14 @@ Result<void> createImages(const Device& device, PixelTargets& targets)
 {
     constexpr VkImageUsageFlags kDrawn =
         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    const struct {
-        Image& image;
-        const char* name;
-        VkFormat format;
-        VkImageUsageFlags usage;
-    } images[] = {
+    const NamedImage images[] = {
         {targets.geometry, "pixel geometry", kWords, kDrawn},
         {targets.selfVisibility, "pixel self-visibility", kWords, kDrawn},
         {targets.instance, "pixel instances", kWord, kDrawn},
         {targets.radiance, "pixel radiance", kRadiance,
          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
     };
-    for (const auto& [image, name, format, usage] : images) {
-        Result<Image> made = createImage(
-            device, {.name = name, .extent = targets.extent, .format = format, .usage = usage});
-        if (!made)
-            return made.error();
-        image = std::move(*made);
-    }
-    return {};
+    return createImages(device, targets.extent, images);
 }
 
 Result<void> createBuffers(const Device& device, PixelTargets& targets)

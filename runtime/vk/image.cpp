@@ -136,6 +136,19 @@ Result<Image> createImage(const Device& device, const ImageDesc& desc)
     return image;
 }
 
+Result<void> createImages(const Device& device, VkExtent2D extent,
+                          std::span<const NamedImage> images)
+{
+    for (const auto& [image, name, format, usage] : images) {
+        Result<Image> made =
+            createImage(device, {.name = name, .extent = extent, .format = format, .usage = usage});
+        if (!made)
+            return made.error();
+        image = std::move(*made);
+    }
+    return {};
+}
+
 UniqueSampler createSampler(const Device& device, VkFilter filter, VkSamplerAddressMode addressMode)
 {
     return createSampler(device, {.mag = filter,

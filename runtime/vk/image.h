@@ -27,6 +27,16 @@ struct Image {
 // Error: out of memory, larger than the device's images, or a format without that usage.
 Result<Image> createImage(const Device& device, const ImageDesc& desc);
 
+// Several of one size. Error: as of createImage; those before it are made.
+struct NamedImage {
+    Image& image;
+    const char* name;
+    VkFormat format;
+    VkImageUsageFlags usage;
+};
+Result<void> createImages(const Device& device, VkExtent2D extent,
+                          std::span<const NamedImage> images);
+
 [[nodiscard]] UniqueSampler createSampler(const Device& device, VkFilter filter,
                                           VkSamplerAddressMode addressMode);
 
