@@ -54,10 +54,14 @@ const MeshAsset& AssetStore::mesh(AssetHandle handle) const
     return get(m_meshes, handle);
 }
 
+bool AssetStore::hasMesh(AssetHandle handle) const
+{
+    return handle.index < m_meshes.size();
+}
+
 const std::string& AssetStore::path(AssetHandle handle) const
 {
-    PENUMBRA_ASSERT(handle.index < m_meshes.size(), "asset {} of {}", handle.index,
-                    m_meshes.size());
+    PENUMBRA_ASSERT(hasMesh(handle), "asset {} of {}", handle.index, m_meshes.size());
     return m_meshes[handle.index].path;
 }
 
@@ -88,6 +92,13 @@ const Environment& AssetStore::environment(AssetHandle handle) const
 bool AssetStore::hasEnvironment(AssetHandle handle) const
 {
     return handle.index < m_environments.size();
+}
+
+const std::string& AssetStore::environmentPath(AssetHandle handle) const
+{
+    PENUMBRA_ASSERT(hasEnvironment(handle), "environment {} of {}", handle.index,
+                    m_environments.size());
+    return m_environments[handle.index].path;
 }
 
 } // namespace penumbra

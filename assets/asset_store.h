@@ -29,6 +29,7 @@ public:
     AssetHandle addMesh(MeshAsset mesh);
 
     [[nodiscard]] const MeshAsset& mesh(AssetHandle handle) const;
+    [[nodiscard]] bool hasMesh(AssetHandle handle) const;
     [[nodiscard]] const std::string& path(AssetHandle handle) const; // empty: made in memory
     [[nodiscard]] std::vector<const MeshAsset*> meshes() const;      // by handle
 
@@ -37,6 +38,7 @@ public:
     AssetHandle addEnvironment(Environment environment);
     [[nodiscard]] const Environment& environment(AssetHandle handle) const;
     [[nodiscard]] bool hasEnvironment(AssetHandle handle) const;
+    [[nodiscard]] const std::string& environmentPath(AssetHandle handle) const; // as path()
 
 private:
     template <class Asset>

@@ -14,6 +14,12 @@ struct GlossCycle {
     float period = 6;         // seconds
     float phase = 0;          // parts of a period at time 0; 0: at `low`
 };
+template <>
+inline constexpr auto ecs::kFields<GlossCycle> =
+    ecs::fields(PENUMBRA_FIELD(GlossCycle, low, .min = 0.01, .max = 1e4),
+                PENUMBRA_FIELD(GlossCycle, high, .min = 0.01, .max = 1e4),
+                PENUMBRA_FIELD(GlossCycle, period, .unit = "s", .min = 0.01, .max = 1e4),
+                PENUMBRA_FIELD(GlossCycle, phase));
 
 float exponentAt(const GlossCycle& cycle, double time);
 

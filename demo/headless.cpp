@@ -8,6 +8,7 @@
 #include "demo/simulation.h"
 #include "runtime/file.h"
 #include "runtime/peak_memory.h"
+#include "systems/physics_system.h"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -49,10 +50,9 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
                                      const Measurements& measured)
 {
     const SceneData& data = renderer.scene().data();
-    std::uint64_t dynamic = 0, occluders = 0;
+    std::uint64_t occluders = 0;
     for (const SceneInstance& instance : data.instances)
         occluders += instance.occluder ? 1 : 0;
-    dynamic = scene.physics ? scene.physics->bodyCount() - 1 : 0; // one body is the ground
     return {{"scene", scene.name},
             {"device", options.cpuScalar ? "cpu-scalar" : device.properties.deviceName},
             {"driver", device.driver},
@@ -60,7 +60,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"receivers", receiverKindName(options.receivers)},
             {"size", {options.width, options.height}},
             {"frames", measured.frames},
-            {"objects", dynamic},
+            {"objects", scene.world.query<const PhysicsBody>().count()},
             {"occluders", occluders},
             {"lights", scene.world.query<const EnvironmentLight>().count() + data.lights.size()},
             {"vertices", data.vertexCount},

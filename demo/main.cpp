@@ -40,6 +40,9 @@ Result<void> runOn(const Device& device, const DemoOptions& options)
                               options.out.empty() ? "out" : options.out);
     Result<std::unique_ptr<DemoScene>> scene =
         loadScene(options.scene, {options.assets, options.seed, options.environment});
+    if (scene)
+        for (const std::string& warning : (*scene)->warnings)
+            fmt::print(stderr, "penumbra-demo: {}\n", warning);
     return scene ? runHeadless(device, **scene, options) : scene.error();
 }
 

@@ -33,7 +33,8 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
     std::uint32_t reference = 1024;
     options.assets = defaultAssets();
     CLI::Option* sceneOption =
-        app.add_option("--scene", options.scene, "scene to show")->capture_default_str();
+        app.add_option("--scene", options.scene, "scene to show, or a scene file (.json)")
+            ->capture_default_str();
     app.add_option("--environment", options.environment,
                    "name of a .env of the assets to light the scene with");
     app.add_flag("--list-scenes", options.listScenes, "list the scenes and stop");

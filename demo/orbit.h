@@ -17,6 +17,12 @@ struct Orbit {
     float spin = 0;   // rad/s about its own vertical axis
     float aim = 0;    // 1: its +z looks at `center` instead
 };
+template <>
+inline constexpr auto ecs::kFields<Orbit> = ecs::fields(
+    PENUMBRA_FIELD(Orbit, center, .unit = "m"), PENUMBRA_FIELD(Orbit, radius, .unit = "m"),
+    PENUMBRA_FIELD(Orbit, speed, .unit = "rad/s"), PENUMBRA_FIELD(Orbit, phase, .unit = "rad"),
+    PENUMBRA_FIELD(Orbit, bob, .unit = "m"), PENUMBRA_FIELD(Orbit, spin, .unit = "rad/s"),
+    PENUMBRA_FIELD(Orbit, aim, .min = 0, .max = 1));
 
 // Where the entity is `time` seconds from the start.
 Transform orbitAt(const Orbit& orbit, const Transform& now, double time);

@@ -1,5 +1,7 @@
 #include "demo/paint.h"
 
+#include "systems/transforms.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
@@ -26,9 +28,9 @@ std::optional<ecs::Entity> pick(DemoScene& scene, const View& view, vec2 clip)
     const vec3 direction = normalize(vec3(far) / far.w - view.eye);
     std::optional<ecs::Entity> nearest;
     float distance = std::numeric_limits<float>::infinity();
-    scene.world.query<const Transform, const MeshInstance, const Material>().each(
-        [&](ecs::Entity entity, const Transform& at, const MeshInstance& instance,
-            const Material&) {
+    scene.world.query<const MeshInstance, ecs::With<Transform>, ecs::With<Material>>().each(
+        [&](ecs::Entity entity, const MeshInstance& instance) {
+            const Transform& at = worldTransform(scene.world, entity);
             const MeshAsset& mesh = scene.assets.mesh(instance.asset);
             const vec4 back(-vec3(at.rotation), at.rotation.w);
             const float t =

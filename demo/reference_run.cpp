@@ -110,8 +110,8 @@ TracedPicture tracePicture(const TracedScene& traced, const DemoScene& scene,
     ReferencePicture picture = renderReference(traced.scene, {sky, traced.lights}, camera,
                                                {.samples = std::max(samples / 4, 64u)});
     paintSurfaces(surfaces, picture);
-    const Image8 shaded =
-        displayImage(picture.radiance.shadowed, {fields.width, fields.height}, scene.exposure);
+    const Image8 shaded = displayImage(picture.radiance.shadowed, {fields.width, fields.height},
+                                       scene.camera.exposure);
     TracedPicture out{fields, picture.radiance.seconds};
     for (std::size_t i = 0; i < picture.instance.size(); ++i)
         if (picture.instance[i] != kNoInstance)
@@ -194,7 +194,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     const TracedPicture picture =
         tracePicture(*traced, scene, camera, *fields, *surfaces, options.samples);
     const Result<Image8> errorImage = drawErrors(renderer, view, receivers, figures.perReceiver,
-                                                 errors.meanUnshadowed / 4, scene.exposure);
+                                                 errors.meanUnshadowed / 4, scene.camera.exposure);
     if (!errorImage)
         return errorImage.error();
     const Kernel kernel = options.cpuScalar ? Kernel::Literal : options.kernel;
@@ -232,7 +232,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         json["byLight"] = figures.byLight;
     Result<void> done = writeFile(options.out / "reference.json", json.dump(2) + "\n");
     if (done)
-        done = writeLightErrors(renderer, view, receivers, figures.lights, scene.exposure,
+        done = writeLightErrors(renderer, view, receivers, figures.lights, scene.camera.exposure,
                                 options.out);
     for (const auto& [name, image] :
          {std::pair{"fields.png", *fields},

@@ -72,8 +72,8 @@ public:
 private:
     Result<void> createPixels();
     Renderer(const Device& device, const DemoScene& scene)
-        : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground),
-          m_exposure(scene.exposure)
+        : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground()),
+          m_exposure(scene.camera.exposure)
     {}
 
     const Device& m_device;

@@ -1,10 +1,12 @@
 #include "demo/scene.h"
 
+#include "demo/scene_file.h"
 #include "demo/scenes/falling.h"
 #include "demo/scenes/lights.h"
 #include "demo/scenes/materials.h"
 #include "demo/scenes/sky.h"
 #include "runtime/ecs/name.h"
+#include "systems/physics_system.h"
 
 #include <algorithm>
 #include <fmt/ranges.h>
@@ -28,8 +30,13 @@ std::span<const SceneEntry> sceneEntries()
     return kScenes;
 }
 
-Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options)
+namespace {
+
+// Without its physics.
+Result<std::unique_ptr<DemoScene>> load(const std::string& name, const SceneOptions& options)
 {
+    if (name.ends_with(".json"))
+        return loadSceneFile(name, options);
     std::error_code ec;
     if (!std::filesystem::is_directory(options.assets, ec))
         return Error{fmt::format("no folder of compiled assets at {}; build the project, or name "
@@ -41,8 +48,22 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
             return entry.load(options);
         names.push_back(entry.name);
     }
-    return Error{
-        fmt::format("no scene is called '{}'; there are: {}", name, fmt::join(names, ", "))};
+    return Error{fmt::format("no scene is called '{}'; there are: {}, and scene files (.json)",
+                             name, fmt::join(names, ", "))};
+}
+
+} // namespace
+
+Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options)
+{
+    Result<std::unique_ptr<DemoScene>> scene = load(name, options);
+    if (!scene)
+        return scene;
+    Result<std::optional<PhysicsWorld>> physics = buildPhysics((*scene)->world, (*scene)->assets);
+    if (!physics)
+        return fail(physics.error(), name);
+    (*scene)->physics = std::move(*physics);
+    return scene;
 }
 
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
@@ -50,7 +71,6 @@ Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, s
 {
     auto scene = std::make_unique<DemoScene>();
     scene->name = std::move(name);
-    scene->ground = true;
     if (Result<ecs::Entity> sky = addEnvironment(
             *scene, options.assets, options.environment.empty() ? environment : options.environment,
             intensity);
@@ -59,7 +79,7 @@ Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, s
     Result<AssetHandle> floor = scene->assets.loadMesh(options.assets / (options.floor + ".glb"));
     if (!floor)
         return floor.error();
-    scene->world.create(Transform{}, MeshInstance{*floor},
+    scene->world.create(Ground{}, Transform{}, MeshInstance{*floor},
                         Material{.albedo = vec3(0.62f, 0.60f, 0.57f)});
     return scene;
 }

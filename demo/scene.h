@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assets/asset_store.h"
+#include "runtime/ecs/scene_file.h"
 #include "runtime/ecs/world.h"
 #include "systems/components.h"
 #include "systems/physics/physics_world.h"
@@ -18,10 +19,12 @@ struct DemoScene {
     std::string name;
     AssetStore assets;
     ecs::World world;
-    std::optional<PhysicsWorld> physics;
-    bool ground = false; // y < 0 is solid: light comes from above the horizon only
-    float exposure = 1;  // display value per W/(m² sr)
+    ecs::Scene file;                     // what a scene file says beyond the world
+    std::optional<PhysicsWorld> physics; // nothing: no entity has a RigidBody
     Camera camera;
+    std::vector<std::string> warnings; // of its file
+
+    [[nodiscard]] bool ground() const { return world.query<ecs::With<Ground>>().count() > 0; }
 };
 
 struct SceneOptions {
@@ -38,7 +41,8 @@ struct SceneEntry {
 };
 std::span<const SceneEntry> sceneEntries();
 
-// Error: no such scene, the message lists all; or an asset that is missing or damaged.
+// `name` of a scene, or a scene file (.json). Error: no such scene, the message lists all; or an
+// asset that is missing or damaged.
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
 
 // A scene on the floor, which lies in the light: the sky that the options ask for, else

@@ -4,13 +4,14 @@
 #include "demo/orbit.h"
 #include "demo/sky_motion.h"
 #include "systems/physics_system.h"
+#include "systems/transforms.h"
 
 namespace penumbra {
 
-Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", "extract"})
+Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", "place", "extract"})
 {
     if (scene.physics) {
-        m_schedule.add<const RigidBody, Transform>(
+        m_schedule.add<const PhysicsBody, Transform>(
             "physics", "simulate", [this, &scene](ecs::SystemContext& context) {
                 stepPhysics(context, *scene.physics, m_seconds);
             });
@@ -24,7 +25,8 @@ Simulation::Simulation(DemoScene& scene) : m_schedule(scene.world, {"simulate", 
     m_schedule.add<const SkyFade, EnvironmentLight>(
         "sky fades", "simulate",
         [this](ecs::SystemContext& context) { fadeSkies(context, m_seconds); });
-    m_schedule.add<const Transform, const Material, const ShadowFieldEmitter,
+    m_schedule.add<const Transform, WorldTransform>("transforms", "place", updateWorldTransforms);
+    m_schedule.add<const Transform, const WorldTransform, const Material, const ShadowFieldEmitter,
                    const EnvironmentLight, const RenderInstance, const RenderLight>(
         "gather", "extract",
         [this](ecs::SystemContext& context) { gatherChanged(context, m_changes); });

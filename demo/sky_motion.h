@@ -15,6 +15,12 @@ struct SkyMotion {
     float period = 0;    // seconds from there to there; 0: it stays
     float phase = 0;     // at time 0, in periods; 1/2: it is gone
 };
+template <>
+inline constexpr auto ecs::kFields<SkyMotion> =
+    ecs::fields(PENUMBRA_FIELD(SkyMotion, intensity, .min = 0, .max = 1e6),
+                PENUMBRA_FIELD(SkyMotion, turn, .unit = "rad/s"),
+                PENUMBRA_FIELD(SkyMotion, period, .unit = "s", .min = 0, .max = 1e4),
+                PENUMBRA_FIELD(SkyMotion, phase));
 
 // The light `time` seconds from the start.
 EnvironmentLight skyAt(const SkyMotion& motion, const EnvironmentLight& now, double time);
@@ -29,6 +35,10 @@ struct SkyFade {
     float to = 0;        // >= 0
     float perSecond = 1; // > 0
 };
+template <>
+inline constexpr auto ecs::kFields<SkyFade> =
+    ecs::fields(PENUMBRA_FIELD(SkyFade, to, .min = 0, .max = 1e6),
+                PENUMBRA_FIELD(SkyFade, perSecond, .min = 1e-6, .max = 1e6));
 
 // System: reads SkyFade, writes EnvironmentLight; ends fades.
 void fadeSkies(const ecs::SystemContext& context, float seconds);

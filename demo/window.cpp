@@ -4,6 +4,7 @@
 #include "demo/editor/editor.h"
 #include "demo/editor/overlay.h"
 #include "demo/renderer.h"
+#include "demo/save_panel.h"
 #include "demo/simulation.h"
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/instance.h"
@@ -97,6 +98,8 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
+    for (const std::string& warning : show.scene->warnings)
+        fmt::print(stderr, "penumbra-demo: {}\n", warning);
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(device, *show.scene, extent);
     if (!renderer)
         return renderer.error();
@@ -105,7 +108,8 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     return show;
 }
 
-void drawPanel(Editor& editor, Controls& controls, Show& show)
+void drawPanel(Editor& editor, SavePanel& save, Controls& controls, Show& show,
+               const std::filesystem::path& assets)
 {
     ImGui::SetNextWindowPos({12, 12}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize({380, 560}, ImGuiCond_FirstUseEver);
@@ -117,6 +121,7 @@ void drawPanel(Editor& editor, Controls& controls, Show& show)
         bool literal = controls.kernel == Kernel::Literal;
         if (ImGui::Checkbox("kernel literal", &literal))
             controls.kernel = literal ? Kernel::Literal : Kernel::Exact;
+        save.draw(*show.scene, controls.camera, assets);
         ImGui::Separator();
         editor.draw(show.scene->world, show.scene->assets);
     }
@@ -187,6 +192,7 @@ Result<void> runWindow(const DemoOptions& options)
     if (!overlay)
         return overlay.error();
     Editor editor;
+    SavePanel save;
     fmt::print("{}", kKeysText);
 
     TitleClock title;
@@ -221,7 +227,7 @@ Result<void> runWindow(const DemoOptions& options)
         last = now;
         (*overlay)->begin();
         if (controls.panel)
-            drawPanel(editor, controls, *show);
+            drawPanel(editor, save, controls, *show, options.assets);
         if (Result<void> done = controlSky(window, controls, *show->scene, options.assets, seconds);
             !done)
             return done;

@@ -98,14 +98,38 @@ inline constexpr auto ecs::kFields<EnvironmentLight> =
                 PENUMBRA_FIELD(EnvironmentLight, intensity, .min = 0, .max = 1e6),
                 PENUMBRA_FIELD(EnvironmentLight, rotation, .type = ecs::FieldType::rotation));
 
-// The entity moves as a rigid body of the physics world.  Written by: spawn.  Read by: physics.
+// What a body collides as, made from its mesh: its convex hull, or convex pieces that follow its
+// hollows.
+enum class BodyShape : std::uint8_t { hull, pieces };
+inline constexpr std::string_view kBodyShapeNames[] = {"hull", "pieces"};
+
+// The entity's mesh moves as a rigid body, scaled as the entity is at the start; not below a
+// Parent.  Written by: spawn.  Read by: buildPhysics, once.
 struct RigidBody {
     static constexpr std::string_view kName = "RigidBody";
-    std::uint64_t body = 0; // id in the PhysicsWorld
+    float density = 300; // kg/m³ of the shape; 0: it does not move
+    BodyShape shape = BodyShape::hull;
+    float friction = 0.6f; // these three as in BodyDescription (systems/physics/physics_world.h)
+    float rollingFriction = 0.02f;
+    float restitution = 0.1f;
+    vec3 velocity{0}, angularVelocity{0}; // world, at the start
 };
 template <>
-inline constexpr auto ecs::kFields<RigidBody> = ecs::fields(PENUMBRA_FIELD(RigidBody, body,
-                                                                           .kind = "body"));
+inline constexpr auto ecs::kFields<RigidBody> = ecs::fields(
+    PENUMBRA_FIELD(RigidBody, density, .unit = "kg/m³", .min = 0, .max = 1e5),
+    PENUMBRA_FIELD(RigidBody, shape, .names = kBodyShapeNames),
+    PENUMBRA_FIELD(RigidBody, friction, .min = 0, .max = 10),
+    PENUMBRA_FIELD(RigidBody, rollingFriction, .unit = "m", .min = 0, .max = 10),
+    PENUMBRA_FIELD(RigidBody, restitution, .min = 0, .max = 1),
+    PENUMBRA_FIELD(RigidBody, velocity, .unit = "m/s", .min = -1e3, .max = 1e3),
+    PENUMBRA_FIELD(RigidBody, angularVelocity, .unit = "rad/s", .min = -1e3, .max = 1e3));
+
+// Everything below y = 0 is solid: light comes from above the horizon only (docs/decisions/0002),
+// and bodies lie on it. One entity that has it is enough.  Written by: spawn.  Read by: scene
+// start.
+struct Ground {
+    static constexpr std::string_view kName = "Ground";
+};
 
 // What the picture is seen from.  Written by: spawn, input.  Read by: frame.
 struct Camera {
@@ -115,6 +139,7 @@ struct Camera {
     float yaw = 0, pitch = 0.4f;   // radians; pitch > 0 looks down
     float fieldOfView = 0.7f;      // vertical, radians
     float near = 0.05f, far = 100; // metres
+    float exposure = 1;            // display value per W/(m² sr)
 };
 template <>
 inline constexpr auto ecs::kFields<Camera> = ecs::fields(
@@ -123,6 +148,7 @@ inline constexpr auto ecs::kFields<Camera> = ecs::fields(
     PENUMBRA_FIELD(Camera, yaw, .unit = "rad"), PENUMBRA_FIELD(Camera, pitch, .unit = "rad"),
     PENUMBRA_FIELD(Camera, fieldOfView, .unit = "rad", .min = 0.01, .max = 3.1),
     PENUMBRA_FIELD(Camera, near, .unit = "m", .min = 1e-6, .max = 1e6),
-    PENUMBRA_FIELD(Camera, far, .unit = "m", .min = 1e-6, .max = 1e9));
+    PENUMBRA_FIELD(Camera, far, .unit = "m", .min = 1e-6, .max = 1e9),
+    PENUMBRA_FIELD(Camera, exposure, .min = 0, .max = 1e6));
 
 } // namespace penumbra

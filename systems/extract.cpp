@@ -1,5 +1,7 @@
 #include "systems/extract.h"
 
+#include "systems/transforms.h"
+
 namespace penumbra {
 
 namespace {
@@ -8,6 +10,9 @@ namespace {
 Result<void> needField(const ecs::World& world, ecs::Entity entity, const AssetStore& assets,
                        AssetHandle asset, FieldKind kind, std::string_view use)
 {
+    if (!assets.hasMesh(asset))
+        return Error{fmt::format("{}: its {} names no asset; name one, or take the component away",
+                                 world.describe(entity), use)};
     const MeshAsset& mesh = assets.mesh(asset);
     if (mesh.field && mesh.field->kind == kind)
         return {};
@@ -37,9 +42,15 @@ void place(Place& at, const Transform& transform)
 template <class Index>
 void gatherMoved(const ecs::SystemContext& context, std::vector<SceneChanges::Moved>& out)
 {
-    context.query<const Transform, const Index, ecs::Changed<Transform>>().each(
-        [&](const Transform& transform, const Index& entity) {
+    context
+        .query<const Transform, const Index, ecs::Changed<Transform>,
+               ecs::Without<WorldTransform>>()
+        .each([&](const Transform& transform, const Index& entity) {
             out.push_back({entity.index, transform});
+        });
+    context.query<const WorldTransform, const Index, ecs::Changed<WorldTransform>>().each(
+        [&](const WorldTransform& transform, const Index& entity) {
+            out.push_back({entity.index, transform.at});
         });
 }
 
@@ -52,6 +63,7 @@ MeshMaterial meshMaterial(const Material& material)
 
 Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
 {
+    addWorldTransforms(world);
     std::vector<SceneInstance> instances;
     std::vector<SceneLight> lights;
     std::vector<ecs::Entity> instanceEntities, lightEntities;
@@ -62,10 +74,15 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
             failed = has;
     };
     world.query<const Transform, const MeshInstance>().each(
-        [&](ecs::Entity entity, const Transform& transform, const MeshInstance& mesh) {
+        [&](ecs::Entity entity, const Transform&, const MeshInstance& mesh) {
+            if (!assets.hasMesh(mesh.asset)) {
+                failed = Error{world.describe(entity) + ": its MeshInstance names no asset; name "
+                                                        "one, or take the component away"};
+                return;
+            }
             SceneInstance instance;
             instance.mesh = mesh.asset.index;
-            place(instance, transform);
+            place(instance, worldTransform(world, entity));
             instance.material = assets.mesh(mesh.asset).material;
             if (const Material* material = world.tryGet<const Material>(entity)) {
                 instance.material = meshMaterial(*material);
@@ -80,13 +97,15 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
             instances.push_back(instance);
             instanceEntities.push_back(entity);
         });
+    if (!failed)
+        return failed.error();
     addIndices<RenderInstance>(world, instanceEntities);
     world.query<const Transform, const ShadowFieldEmitter>().each(
-        [&](ecs::Entity entity, const Transform& transform, const ShadowFieldEmitter& emitter) {
+        [&](ecs::Entity entity, const Transform&, const ShadowFieldEmitter& emitter) {
             need(entity, emitter.asset, FieldKind::Radiance, "emitter");
             SceneLight light;
             light.asset = emitter.asset.index;
-            place(light, transform);
+            place(light, worldTransform(world, entity));
             light.intensity = emitter.intensity;
             if (const auto* owner = world.tryGet<const RenderInstance>(entity)) {
                 light.owner = owner->index;

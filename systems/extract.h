@@ -52,8 +52,8 @@ struct SceneChanges {
     void clear();
 };
 
-// System: reads Transform, Material, ShadowFieldEmitter, EnvironmentLight, RenderInstance,
-// RenderLight. Appends to `out`.
+// System: reads Transform, WorldTransform, Material, ShadowFieldEmitter, EnvironmentLight,
+// RenderInstance, RenderLight. Appends to `out`.
 void gatherChanged(const ecs::SystemContext& context, SceneChanges& out);
 
 // All but the environments, which EnvironmentLighting takes.

@@ -12,7 +12,7 @@ inline void registerSceneComponents()
 {
     ecs::registerComponents<ecs::Name, ecs::Parent, ecs::PrefabPart, Transform, MeshInstance,
                             Material, ShadowFieldOccluder, ShadowFieldEmitter, EnvironmentLight,
-                            RigidBody, Camera>();
+                            RigidBody, Ground, Camera>();
 }
 
 } // namespace penumbra

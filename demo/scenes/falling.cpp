@@ -1,5 +1,7 @@
 #include "demo/scenes/falling.h"
 
+#include "demo/scenes/objects.h"
+
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
@@ -7,21 +9,19 @@ namespace penumbra {
 
 namespace {
 
-enum class Hull { Convex, Pieces };
-
 struct Kind {
     const char* asset;
     float size; // largest side of the bounding box, metres
-    Hull hull;
+    BodyShape shape;
     int count;
 };
 
 // 20 objects. The bunny alone has 35 thousand vertices, so there is one of it.
 constexpr Kind kKinds[] = {
-    {"bunny", 0.62f, Hull::Convex, 1},  {"knight", 0.50f, Hull::Pieces, 3},
-    {"teapot", 0.52f, Hull::Pieces, 3}, {"torus_knot", 0.50f, Hull::Pieces, 3},
-    {"gear", 0.46f, Hull::Convex, 3},   {"chess_pawn", 0.44f, Hull::Pieces, 2},
-    {"mug", 0.36f, Hull::Pieces, 3},    {"rounded_cube", 0.32f, Hull::Convex, 2},
+    {"bunny", 0.62f, BodyShape::hull, 1},    {"knight", 0.50f, BodyShape::pieces, 3},
+    {"teapot", 0.52f, BodyShape::pieces, 3}, {"torus_knot", 0.50f, BodyShape::pieces, 3},
+    {"gear", 0.46f, BodyShape::hull, 3},     {"chess_pawn", 0.44f, BodyShape::pieces, 2},
+    {"mug", 0.36f, BodyShape::pieces, 3},    {"rounded_cube", 0.32f, BodyShape::hull, 2},
 };
 
 struct Look {
@@ -66,37 +66,6 @@ quat randomRotation(Random& random)
                 std::sqrt(1 - u) * std::cos(a), std::sqrt(u) * std::sin(b));
 }
 
-struct LoadedKind {
-    AssetHandle asset;
-    float scale = 1;
-    CollisionShape shape;
-};
-
-Result<LoadedKind> loadKind(const Kind& kind, const SceneOptions& options, AssetStore& store)
-{
-    Result<AssetHandle> asset = store.loadMesh(options.assets / (std::string(kind.asset) + ".glb"));
-    if (!asset)
-        return asset.error();
-    const MeshAsset& mesh = store.mesh(*asset);
-    if (!mesh.field)
-        return Error{
-            fmt::format("{}.glb: has no shadow field; bake it without --no-field", kind.asset)};
-    const vec3 extent = mesh.boundsMax - mesh.boundsMin;
-    const float scale = kind.size / std::max({extent.x, extent.y, extent.z});
-
-    // Bullet's shapes are not scaled afterwards: scale the points.
-    std::vector<vec3> points;
-    for (const vec3& p : mesh.positions)
-        points.push_back(p * scale);
-    Result<CollisionShape> shape =
-        kind.hull == Hull::Pieces
-            ? meshShape(points, mesh.indices, {.maxPieces = 14, .resolution = 32})
-            : hullShape(points);
-    if (!shape)
-        return fail(shape.error(), kind.asset);
-    return LoadedKind{*asset, scale, std::move(*shape)};
-}
-
 } // namespace
 
 Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
@@ -105,25 +74,24 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
     if (!made)
         return made;
     std::unique_ptr<DemoScene> scene = std::move(*made);
-    scene->exposure = 1.6f;
     scene->camera = {.target = vec3(0, 0.22f, 0),
                      .distance = 4.1f,
                      .yaw = 0.55f,
                      .pitch = 0.52f,
-                     .fieldOfView = 0.62f};
+                     .fieldOfView = 0.62f,
+                     .exposure = 1.6f};
 
-    std::vector<LoadedKind> kinds;
-    for (const Kind& kind : kKinds) {
-        Result<LoadedKind> loaded = loadKind(kind, options, scene->assets);
-        if (!loaded)
-            return loaded.error();
-        kinds.push_back(std::move(*loaded));
+    AssetHandle assets[std::size(kKinds)];
+    for (std::size_t k = 0; k < std::size(kKinds); ++k) {
+        Result<AssetHandle> asset = loadMesh(*scene, options, kKinds[k].asset);
+        if (!asset)
+            return asset.error();
+        assets[k] = *asset;
     }
 
     // One object per slot of a 3 x 3 x 3 lattice above the floor, from below, kinds in turn, each
     // jittered and turned: they start apart whatever the seed.
     Random random(options.seed);
-    std::vector<BodyDescription> bodies{{.id = 0, .shape = *groundShape(0)}};
     int remaining[std::size(kKinds)], slot = 0;
     for (std::size_t k = 0; k < std::size(kKinds); ++k)
         remaining[k] = kKinds[k].count;
@@ -140,27 +108,17 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
                 (static_cast<float>(column % 3) - 1) * 0.72f + random.uniform(-0.06f, 0.06f),
                 0.55f + static_cast<float>(layer) * 0.75f + random.uniform(0, 0.1f),
                 (static_cast<float>(row) - 1) * 0.72f + random.uniform(-0.06f, 0.06f));
-            BodyDescription body{.id = static_cast<std::uint64_t>(slot) + 1,
-                                 .shape = kinds[k].shape};
-            constexpr float kDensity = 300; // kg/m³: light wood; only the ratios matter here
-            body.mass = std::max(0.2f, kDensity * body.shape.volume());
-            body.pose = {position, rotation};
-            body.motion.angularVelocity =
-                vec3(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+            const vec3 spin(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
             const Look& look = kLooks[static_cast<std::size_t>(slot) % std::size(kLooks)];
-            scene->world.create(Transform{position, kinds[k].scale,
+            scene->world.create(Transform{position,
+                                          scaleTo(scene->assets.mesh(assets[k]), kKinds[k].size),
                                           vec4(rotation.x, rotation.y, rotation.z, rotation.w)},
-                                MeshInstance{kinds[k].asset}, ShadowFieldOccluder{kinds[k].asset},
-                                RigidBody{body.id},
+                                MeshInstance{assets[k]}, ShadowFieldOccluder{assets[k]},
+                                RigidBody{.shape = kKinds[k].shape, .angularVelocity = spin},
                                 Material{look.albedo, look.glossFraction, look.glossExponent});
-            bodies.push_back(std::move(body));
             ++slot;
         }
     }
-    Result<PhysicsWorld> physics = PhysicsWorld::build(std::move(bodies));
-    if (!physics)
-        return physics.error();
-    scene->physics = std::move(*physics);
     return scene;
 }
 

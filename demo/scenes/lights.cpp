@@ -56,7 +56,6 @@ Result<std::unique_ptr<DemoScene>> loadLightsScene(const SceneOptions& options)
     if (!made)
         return made;
     std::unique_ptr<DemoScene> scene = std::move(*made);
-    scene->exposure = 1.0f;
     scene->camera = {.target = vec3(0, 0.28f, 0),
                      .distance = 4.4f,
                      .yaw = 0.45f,

@@ -42,12 +42,12 @@ Result<std::unique_ptr<DemoScene>> loadMaterialsScene(const SceneOptions& option
     if (!made)
         return made;
     std::unique_ptr<DemoScene> scene = std::move(*made);
-    scene->exposure = 1.2f;
     scene->camera = {.target = vec3(0, 0.2f, -0.05f),
                      .distance = 4.0f,
                      .yaw = 0.35f,
                      .pitch = 0.42f,
-                     .fieldOfView = 0.62f};
+                     .fieldOfView = 0.62f,
+                     .exposure = 1.2f};
     Result<AssetHandle> ball = load(*scene, options, "ball");
     Result<AssetHandle> beachBall = load(*scene, options, "beach_ball");
     Result<AssetHandle> knot = load(*scene, options, "painted_knot");

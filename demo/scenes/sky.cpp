@@ -29,12 +29,12 @@ Result<std::unique_ptr<DemoScene>> loadSkyScene(const SceneOptions& options)
     if (!made)
         return made;
     std::unique_ptr<DemoScene> scene = std::move(*made);
-    scene->exposure = 0.75f;
     scene->camera = {.target = vec3(0, 0.34f, 0),
                      .distance = 3.4f,
                      .yaw = 0.5f,
                      .pitch = 0.27f, // the horizon is in sight
-                     .fieldOfView = 0.72f};
+                     .fieldOfView = 0.72f,
+                     .exposure = 0.75f};
     const Result<ecs::Entity> other = addEnvironment(*scene, options.assets, "sunset", 0);
     if (!other)
         return other.error();

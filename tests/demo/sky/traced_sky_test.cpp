@@ -97,7 +97,8 @@ TEST(TracedSky, IsTheLightThatTheFieldsHave)
 {
     for (const bool ground : {false, true}) {
         DemoScene scene;
-        scene.ground = ground;
+        if (ground)
+            scene.world.create(Ground{});
         const AssetHandle day = scene.assets.addEnvironment(makeSky(64, 32, lopsided));
         const AssetHandle dusk = scene.assets.addEnvironment(makeSky(32, 16, evening));
         const std::vector<EnvironmentLight> lights = {

@@ -3,6 +3,7 @@
 
 #include "runtime/ecs/name.h"
 #include "runtime/ecs/schedule.h"
+#include "systems/transforms.h"
 
 #include <gtest/gtest.h>
 
@@ -65,7 +66,8 @@ TEST_F(Extract, NamesTheEntityWhoseAssetHasNoSuchField)
          {error(MeshInstance{m_plain}, ShadowFieldOccluder{m_plain}),
           error(MeshInstance{m_block}, ShadowFieldOccluder{m_lamp}),
           error(ShadowFieldEmitter{m_block}), error(ShadowFieldEmitter{m_plain}),
-          error(MeshInstance{m_block}, ShadowFieldEmitter{m_lamp})}) {
+          error(MeshInstance{}), error(MeshInstance{m_block}, ShadowFieldOccluder{}),
+          error(ShadowFieldEmitter{}), error(MeshInstance{m_block}, ShadowFieldEmitter{m_lamp})}) {
         EXPECT_NE(message.find("culprit"), std::string::npos) << message;
     }
 }
@@ -79,8 +81,8 @@ TEST_F(Extract, GathersOnlyWhatChanged)
     ASSERT_TRUE(extractScene(m_world, m_assets));
     SceneChanges changes;
     ecs::Schedule schedule(m_world, {"extract"});
-    schedule.add<const Transform, const Material, const ShadowFieldEmitter, const RenderInstance,
-                 const RenderLight>(
+    schedule.add<const Transform, const WorldTransform, const Material, const ShadowFieldEmitter,
+                 const EnvironmentLight, const RenderInstance, const RenderLight>(
         "gather", "extract", [&](ecs::SystemContext& context) { gatherChanged(context, changes); });
     const auto run = [&] {
         changes.clear();

@@ -1,7 +1,10 @@
 #include "runtime/ecs/scene_file.h"
 #include "systems/scene_components.h"
 
+#include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 
 namespace penumbra {
 
@@ -153,11 +156,34 @@ TEST(SceneComponents, DefaultsAreValidAndAllAreDescribed)
     registerSceneComponents();
     ecs::World world;
     world.create(ecs::Name("all"), Transform{}, MeshInstance{}, Material{}, ShadowFieldOccluder{},
-                 EnvironmentLight{}, RigidBody{}, Camera{});
+                 ShadowFieldEmitter{}, EnvironmentLight{}, RigidBody{}, Ground{}, Camera{});
     ecs::Scene scene;
     const auto saved = ecs::saveScene(world, scene);
     ASSERT_TRUE(saved) << saved.error().message;
     EXPECT_TRUE((*saved).warnings.empty());
+}
+
+// docs/scene_file.md names every component that files may hold, and its fields.
+TEST(SceneComponents, AreDescribedInTheGuide)
+{
+    registerSceneComponents();
+    std::ifstream file(PENUMBRA_SCENE_GUIDE);
+    std::map<std::string, std::string> rows; // by component
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("| `"))
+            rows[line.substr(3, line.find('`', 3) - 3)] = line;
+    for (const std::string_view name : {"Name", "Parent", "PrefabPart", "Transform", "MeshInstance",
+                                        "Material", "ShadowFieldOccluder", "ShadowFieldEmitter",
+                                        "EnvironmentLight", "RigidBody", "Ground", "Camera"}) {
+        const std::string& row = rows[std::string(name)];
+        EXPECT_FALSE(row.empty()) << name;
+        if (name == "PrefabPart")
+            continue;
+        for (const ecs::Field& field :
+             ecs::componentInfo(static_cast<ecs::ComponentId>(ecs::findComponent(name))).fields)
+            EXPECT_NE(row.find(fmt::format("`{}`", field.name)), std::string::npos)
+                << name << " " << field.name;
+    }
 }
 
 } // namespace penumbra

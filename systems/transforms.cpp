@@ -1,0 +1,60 @@
+#include "systems/transforms.h"
+
+#include "shaders/shared/instance.h"
+
+namespace penumbra {
+
+namespace {
+
+// Where each now is, parents first: `moved(entity, WorldTransform)` for what is elsewhere than
+// before. `moved` writes at once, since children read it.
+template <class Query, class Moved>
+void follow(const Query& placed, const ecs::Hierarchy& hierarchy, const Moved& moved)
+{
+    placed.eachDown(hierarchy, [&](ecs::Entity entity, const WorldTransform& old,
+                                   const Transform& local, const WorldTransform* parent) {
+        const Transform now = parent ? transformed(parent->at, local) : local;
+        if (now.position != old.at.position || now.scale != old.at.scale ||
+            now.rotation != old.at.rotation)
+            moved(entity, WorldTransform{now});
+    });
+}
+
+} // namespace
+
+Transform transformed(const Transform& parent, const Transform& child)
+{
+    const auto quaternion = [](vec4 q) { return quat(q.w, q.x, q.y, q.z); };
+    const quat rotation =
+        glm::normalize(quaternion(parent.rotation) * quaternion(child.rotation)); // no drift
+    return {.position = parent.position + rotate(parent.rotation, parent.scale * child.position),
+            .scale = parent.scale * child.scale,
+            .rotation = vec4(rotation.x, rotation.y, rotation.z, rotation.w)};
+}
+
+void addWorldTransforms(ecs::World& world)
+{
+    for (const ecs::Hierarchy::Slot& slot : world.hierarchy().order())
+        if (world.has<Transform>(slot.entity))
+            world.add(slot.entity, WorldTransform{});
+    follow(world.query<const WorldTransform, const Transform>(), world.hierarchy(),
+           [&](ecs::Entity entity, const WorldTransform& now) { world.set(entity, now); });
+}
+
+void updateWorldTransforms(const ecs::SystemContext& context)
+{
+    bool stale = false;
+    context.query<ecs::With<WorldTransform>, ecs::Changed<Transform>>().each(
+        [&](ecs::Entity) { stale = true; });
+    if (stale)
+        follow(context.query<const WorldTransform, const Transform>(), context.hierarchy(),
+               [&](ecs::Entity entity, const WorldTransform& now) { context.set(entity, now); });
+}
+
+const Transform& worldTransform(const ecs::World& world, ecs::Entity entity)
+{
+    const WorldTransform* const placed = world.tryGet<const WorldTransform>(entity);
+    return placed ? placed->at : world.get<const Transform>(entity);
+}
+
+} // namespace penumbra
