@@ -38,8 +38,11 @@ struct BakeResult {
     std::vector<Probe> probes;                  // the exact field off the grid
 };
 
-// `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid. Uses the TBB arena of
-// the caller.
+// Error: the mesh is too small or too large to bake.
+Result<void> checkExtent(const MeshAsset& mesh);
+
+// `positions`, `normals` [vertexCount], `indices` [3 * triangleCount] valid, of a mesh that passes
+// checkExtent. Uses the TBB arena of the caller.
 BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
                     const std::vector<std::uint32_t>& indices, const BakeOptions& options,
                     Progress& progress);

@@ -137,11 +137,8 @@ Result<void> prepareMesh(CompiledAsset& asset, const std::string& place,
             return fail(quantised.error(), place);
     }
     warnFarFromOrigin(asset.mesh, report.warnings);
-    const float size = length(asset.mesh.boundsMax - asset.mesh.boundsMin);
-    if (!(size > 4 * kMinFieldRadius && size < kMaxCoordinate)) // its bounding sphere has a field
-        return Error{fmt::format("{}: {} m across, allowed {} to {} m; scale it, its unit is the "
-                                 "metre",
-                                 place, size, 4 * kMinFieldRadius, kMaxCoordinate)};
+    if (const auto fits = checkExtent(asset.mesh); !fits)
+        return fail(fits.error(), place);
     return {};
 }
 

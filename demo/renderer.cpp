@@ -3,6 +3,7 @@
 #include "runtime/vk/barriers.h"
 #include "runtime/vk/transfer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
@@ -40,10 +41,23 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoSce
 Result<void> Renderer::apply(const SceneChanges& changes)
 {
     applyChanges(changes, m_scene);
-    if (!changes.relit)
-        return {};
-    m_lighting.set(changes.environments);
-    return m_scene.setBackground(m_lighting.background());
+    Result<void> done;
+    if (changes.relit) {
+        m_lighting.set(changes.environments);
+        done = m_scene.setBackground(m_lighting.background());
+    }
+    if (changes.relit || !changes.materials.empty()) {
+        const std::vector<SceneInstance>& instances = m_scene.data().instances;
+        const bool mirrors =
+            std::any_of(instances.begin(), instances.end(), [](const SceneInstance& instance) {
+                return instance.material.glossFraction > 0 &&
+                       skyLobeShare(instance.material.glossExponent) > 0;
+            });
+        if (mirrors && (changes.relit || !m_mirrors))
+            m_scene.setSkyLobes(m_lighting.lobes());
+        m_mirrors = mirrors;
+    }
+    return done;
 }
 
 FrameConstants Renderer::constants(const View& view) const

@@ -1,19 +1,21 @@
 #version 460
 // combine_exact: one workgroup per visible cluster, kReceivers receivers per invocation.
-//   T = transfer of the receiver, its values at the 32 nodes          (shaders/shared/transfer.h)
-//   occluder:    T = O * T, node by node                              (triple product)
-//   local light: B += integral of S T', where T' is T with the occluders that stand before the light (double product),
-//                corrected as shaders/shared/emitter.h says
-//   environment: B += sum over nodes of weight * L * T, after the last occluder
+//   V = self-visibility of the receiver, its values at the 32 nodes
+//   occluder:    V = O * V, node by node                              (triple product)
+//   local light: B += integral of S T', where T' is T of V with the occluders that stand before the light (double
+//                product; T = V times BRDF: shaders/shared/transfer.h), corrected as shaders/shared/emitter.h says
+//   environment: B += sum over nodes of weight * L * T, after the last occluder; what the SH of L lack for sharp
+//                reflections is added as shaders/shared/gloss.h says
 // Source: Zhou et al. 2005, Fig. 5; the fast way is findings section 1, kernel J.
 // Differs: products at quadrature nodes instead of tripling coefficients, so a chain keeps more than order 4 and is
 // commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster; an occluder
 // comes before a light by a weight, not by a yes or no (shaders/shared/order.h).
-//   reads   visible, clusters, lists, instances, fields, receivers
+//   reads   visible, clusters, lists, instances, fields, receivers, skyLobes
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
 #include "shaders/shared/emitter.h"
+#include "shaders/shared/gloss.h"
 #include "shaders/shared/order.h"
 #include "shaders/shared/visibility.h"
 
@@ -46,47 +48,80 @@ ShNodal occlusion(FieldEntity entity, vec3 position, float weight)
 }
 
 // The double product, in the light's frame: one rotation for three channels.
-vec3 lightThrough(ShNodal transfer, FieldEntity light, vec3 position, vec3 normal, float glossFraction)
+vec3 lightThrough(ShNodal transfer, FieldEntity light, Receiver lit)
 {
     FieldCell cell;
-    const FieldTetrahedron t = tetrahedronAt(light, position, cell);
+    const FieldTetrahedron t = tetrahedronAt(light, lit.position, cell);
     const vec4 scale = light.bandScale * (cell.decay * (1.0 / 256.0));
     const uint channel = light.grid.side * light.grid.side * light.grid.shells;
     const Sh4 r = sampleField(cell.sample0, t), g = sampleField(cell.sample0 + channel, t);
     const Sh4 b = sampleField(cell.sample0 + 2u * channel, t);
     const Sh4 all = fieldDeviation(shAdd(shAdd(r, g), b), scale);
     const Sh4 local = fieldDeviation(shRotate(shProject(transfer), shInverse(light.rotation)), scale);
-    const float matte = irradianceCorrection(all, normalize(light.radiiFromWorld * normal));
-    const float correction = mix(matte, 1.0, glossFraction);
+    const float matte = irradianceCorrection(all, normalize(light.radiiFromWorld * lit.normal));
+    const float correction = mix(matte, 1.0, lit.glossFraction);
     return correction * max(vec3(shDot(local, r), shDot(local, g), shDot(local, b)), vec3(0.0));
 }
 
 uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kListStride + at)).x; }
 
-vec3 position[kReceivers], normal[kReceivers];
-ShNodal transfer[kReceivers];
+Receiver receiver[kReceivers];
+ShNodal visibility[kReceivers];
 
-float risen(vec4 sphere, uint v) { return horizonWeight(normal[v], sphere.xyz - position[v], sphere.w); }
+float risen(vec4 sphere, uint v)
+{
+    return horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
+}
 
 void occlude(uint row)
 {
     const GpuInstance occluder = loadInstance(row);
     const FieldEntity entity = instanceField(occluder);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-        transfer[v] = shMultiply(transfer[v], occlusion(entity, position[v], risen(occluder.sphere, v)));
+        visibility[v] =
+            shMultiply(visibility[v], occlusion(entity, receiver[v].position, risen(occluder.sphere, v)));
 }
 
-// `possible`: occluders that `transfer` has not got yet and that may stand before the light, as bits.
-vec3 localLight(GpuInstance light, uint possible, float glossFraction, uint v)
+// `possible`: occluders that `visibility` has not got yet and that may stand before the light, as bits.
+vec3 localLight(GpuInstance light, uint possible, uint v)
 {
-    ShNodal through = transfer[v];
+    ShNodal through = visibility[v];
     for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
         const GpuInstance occluder = loadInstance(listed(kListOccluders + uint(findLSB(bits))));
-        const float weight = orderWeight(occluder.sphere, light.sphere, position[v]) * risen(occluder.sphere, v);
-        through = shMultiply(through, occlusion(instanceField(occluder), position[v], weight));
+        const float weight =
+            orderWeight(occluder.sphere, light.sphere, receiver[v].position) * risen(occluder.sphere, v);
+        through = shMultiply(through, occlusion(instanceField(occluder), receiver[v].position, weight));
     }
     return risen(light.sphere, v) * light.material.rgb *
-           lightThrough(through, instanceField(light), position[v], normal[v], glossFraction);
+           lightThrough(transferNodal(through, receiver[v]), instanceField(light), receiver[v]);
+}
+
+vec4 lobeTexel(uint at) { return texelFetch(skyLobeTexels, int(at)); }
+
+vec3 filteredSky(vec3 direction, float exponent)
+{
+    const float level = skyLobeLevel(exponent);
+    const uint lower = min(uint(level), kSkyLobeLevels - 2u);
+    vec3 sky[2];
+    for (uint k = 0u; k < 2u; ++k) {
+        const SkyLobeCell c = skyLobeCell(direction, lower + k);
+        const vec4 low = mix(lobeTexel(c.texel), lobeTexel(c.texel + 1u), c.fraction.x);
+        const vec4 high = mix(lobeTexel(c.texel + c.side), lobeTexel(c.texel + c.side + 1u), c.fraction.x);
+        sky[k] = mix(low, high, c.fraction.y).rgb;
+    }
+    return mix(sky[0], sky[1], level - float(lower));
+}
+
+vec3 sharpReflection(uint v)
+{
+    const ZonalPolynomial phong = phongPolynomial(receiver[v].glossExponent);
+    GlossSums sums = GlossSums(0.0, vec3(0.0));
+    for (int n = 0; n < 32; ++n) {
+        const float gloss = visibility[v].v[n] * glossAt(receiver[v], phong, kShNodes[n].xyz);
+        sums.visible += gloss * kShNodes[n].w;
+        sums.reflected += gloss * frame.lightNodes[n].rgb;
+    }
+    return skyGloss(receiver[v], sums, filteredSky(skyLobeDirection(receiver[v]), receiver[v].glossExponent));
 }
 
 void main()
@@ -100,11 +135,9 @@ void main()
     vec3 sum[kReceivers];
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
-        const Receiver receiver = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
-        const Sh4 visibility = selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale);
-        position[v] = receiver.position;
-        normal[v] = receiver.normal;
-        transfer[v] = transferNodal(shRotate(visibility, worldFromObject), receiver);
+        receiver[v] = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
+        const Sh4 own = selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale);
+        visibility[v] = shNodes(shRotate(own, worldFromObject));
         sum[v] = vec3(0.0);
     }
 
@@ -118,15 +151,19 @@ void main()
             const GpuInstance light = loadInstance(listed(at));
             const uint possible = listed(at + 2u);
             [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-                sum[v] += localLight(light, possible, self.material.w, v);
+                sum[v] += localLight(light, possible, v);
         }
     }
     for (; next < occluders; ++next)
         occlude(listed(kListOccluders + next));
 
+    const bool sharp = frame.skyLobes != 0u && self.material.w * skyLobeShare(self.material1.x) > 0.0;
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
+        const ShNodal transfer = transferNodal(visibility[v], receiver[v]);
         for (int n = 0; n < 32; ++n)
-            sum[v] += transfer[v].v[n] * frame.lightNodes[n].rgb;
+            sum[v] += transfer.v[n] * frame.lightNodes[n].rgb;
+        if (sharp)
+            sum[v] += sharpReflection(v);
         radiance[cluster.firstRadiance + gl_LocalInvocationID.x + v * lanes] =
             vec4(self.material.rgb * sum[v] + self.emission.rgb, 1.0);
     }

@@ -6,8 +6,8 @@ namespace penumbra {
 
 namespace {
 
-constexpr float kSameUp = 1e-4f;     // radians
-constexpr std::size_t kMaxCuts = 16; // 0.5 KB each; a world shows few maps in turn
+constexpr float kSameUp = 1e-4f;    // radians
+constexpr std::size_t kMaxLit = 16; // 2 MB each at most; a world shows few maps in turn
 
 // The world's +y in the map's axes.
 vec3 mapUp(const EnvironmentLight& light)
@@ -22,36 +22,53 @@ float strength(const AssetStore& assets, const EnvironmentLight& light)
 
 } // namespace
 
-const LightSh& EnvironmentLighting::lightOf(AssetHandle asset, vec3 up)
+EnvironmentLighting::Lit& EnvironmentLighting::lit(const EnvironmentLight& light)
 {
-    const Environment& environment = m_assets.environment(asset);
-    if (!m_ground)
-        return environment.sh6;
-    const auto known = std::find_if(m_cuts.begin(), m_cuts.end(), [&](const Cut& cut) {
-        return cut.asset == asset && length(cut.up - up) < kSameUp;
+    const AssetHandle asset = light.asset;
+    const vec3 up = m_ground ? mapUp(light) : vec3(0);
+    const auto known = std::find_if(m_lit.begin(), m_lit.end(), [&](const Lit& lit) {
+        return lit.asset == asset && length(lit.up - up) < kSameUp;
     });
-    if (known != m_cuts.end()) {
-        std::rotate(known, known + 1, m_cuts.end());
-    } else {
-        if (m_cuts.size() == kMaxCuts)
-            m_cuts.erase(m_cuts.begin());
-        m_cuts.push_back({asset, up, aboveGround(environment, up).sh6});
+    if (known != m_lit.end()) {
+        std::rotate(known, known + 1, m_lit.end());
+        return m_lit.back();
     }
-    return m_cuts.back().light;
+    if (m_lit.size() == kMaxLit)
+        m_lit.erase(m_lit.begin());
+    const Environment& whole = m_assets.environment(asset);
+    m_lit.push_back({asset, up, m_ground ? aboveGround(whole, up).sh6 : whole.sh6, {}});
+    return m_lit.back();
+}
+
+const SkyLobes& EnvironmentLighting::lobes()
+{
+    if (!m_lobes.texels.empty())
+        return m_lobes;
+    m_lobes.texels.resize(kSkyLobeTexels);
+    for (const EnvironmentLight& light : m_lights) {
+        Lit& known = lit(light);
+        if (known.lobes.texels.empty())
+            known.lobes = filterSky(litEnvironment(m_assets, light, m_ground));
+        addTurned(m_lobes, known.lobes, light.intensity, light.rotation);
+    }
+    return m_lobes;
 }
 
 void EnvironmentLighting::set(std::span<const EnvironmentLight> lights)
 {
     m_light = {};
+    m_lobes.texels.clear();
+    m_lights.clear();
     std::vector<const EnvironmentLight*> drawn;
     for (const EnvironmentLight& light : lights) {
         if (light.intensity == 0)
             continue;
-        LightSh radiance = lightOf(light.asset, mapUp(light));
+        LightSh radiance = lit(light).light;
         if (light.rotation != vec4(0, 0, 0, 1))
             radiance = rotatedLight(radiance, rotationMatrix(light.rotation));
         for (std::size_t k = 0; k < radiance.size(); ++k)
             m_light[k] += light.intensity * radiance[k];
+        m_lights.push_back(light);
         drawn.push_back(&light);
     }
     if (drawn.size() > kSkyMaps) {

@@ -3,11 +3,13 @@
 //   lighting.set(lights);                      // when one changed
 //   frameConstants(view, lighting.light());
 //   scene.setBackground(lighting.background());
+//   scene.setSkyLobes(lighting.lobes());
 #pragma once
 
 #include "assets/asset_store.h"
 #include "systems/frame_constants.h"
 #include "systems/gpu_scene.h"
+#include "systems/sky_lobes.h"
 
 namespace penumbra {
 
@@ -25,22 +27,29 @@ public:
     // The sum over the lights of intensity * rotated radiance, W/(m² sr).
     [[nodiscard]] const LightSh& light() const { return m_light; }
 
+    // The same sum, filtered for sharp reflections. Made when asked for: 2 ms per light, and as
+    // long as filterSky for a map that is new.
+    const SkyLobes& lobes();
+
     // The lights that are drawn: the kSkyMaps strongest, by intensity times mean luminance.
     [[nodiscard]] const std::vector<SkyMap>& background() const { return m_background; }
 
 private:
-    // The SH of a map cut at the horizon, in the map's axes.
-    struct Cut {
+    // A map as light, in its axes; over ground, cut at the horizon.
+    struct Lit {
         AssetHandle asset;
-        vec3 up{0}; // of the world, in the map's axes
+        vec3 up{0}; // of the world, in the map's axes; 0 without ground
         LightSh light{};
+        SkyLobes lobes; // empty until asked for
     };
-    const LightSh& lightOf(AssetHandle asset, vec3 up);
+    Lit& lit(const EnvironmentLight& light);
 
     const AssetStore& m_assets;
     bool m_ground;
-    std::vector<Cut> m_cuts; // those used last are last
+    std::vector<Lit> m_lit;                 // those used last are last
+    std::vector<EnvironmentLight> m_lights; // those that are not dark
     LightSh m_light{};
+    SkyLobes m_lobes; // empty: to be made
     std::vector<SkyMap> m_background;
 };
 

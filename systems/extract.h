@@ -13,12 +13,14 @@ namespace penumbra {
 // Which instance of SceneData the entity is.  Written by: extractScene.  Read by: gatherChanged.
 struct RenderInstance {
     static constexpr std::string_view kName = "RenderInstance";
+    static constexpr bool kTransient = true;
     std::uint32_t index = 0;
 };
 
 // Which light of SceneData the entity is.  Written by: extractScene.  Read by: gatherChanged.
 struct RenderLight {
     static constexpr std::string_view kName = "RenderLight";
+    static constexpr bool kTransient = true;
     std::uint32_t index = 0;
 };
 

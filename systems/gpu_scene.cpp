@@ -40,6 +40,7 @@ constexpr Binding kBindings[] = {
     {kFirstSkyBinding + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
     {kPixelRadianceBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
      VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kSkyLobeBinding, kTexels, VK_SHADER_STAGE_COMPUTE_BIT},
 };
 
 // Creates buffers until one fails, and remembers why.
@@ -83,9 +84,14 @@ struct Maker {
         return make({.name = name, .bytes = bytes, .usage = usage, .texelFormat = texels}, {});
     }
 
-    Buffer upload(const char* name, VkDeviceSize bytes, VkBufferUsageFlags usage)
+    Buffer upload(const char* name, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                  VkFormat texels = VK_FORMAT_UNDEFINED)
     {
-        return make({.name = name, .bytes = bytes, .usage = usage, .memory = MemoryKind::Upload},
+        return make({.name = name,
+                     .bytes = bytes,
+                     .usage = usage,
+                     .memory = MemoryKind::Upload,
+                     .texelFormat = texels},
                     {});
     }
 };
@@ -173,6 +179,9 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
         slot.inputs = maker.upload("instance inputs", rows * sizeof(InstanceInput), kStorageUse);
         slot.changed = maker.upload("changed instances", rows * 4, kStorageUse);
+        slot.skyLobes =
+            maker.upload("filtered sky", kSkyLobeTexels * sizeof(vec4),
+                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, VK_FORMAT_R32G32B32A32_SFLOAT);
         scene.m_slots.push_back(std::move(slot));
     }
     if (!maker.result)
@@ -226,6 +235,7 @@ void GpuScene::writeSet(const Device& device, VkDescriptorSet set, std::uint32_t
         .storageBuffer(17, b.denseRotations.handle)
         .storageBuffer(18, b.fieldSamples.handle)
         .storageBuffer(19, receivers.receivers.handle)
+        .texels(kSkyLobeBinding, slot.skyLobes.texels)
         .write();
     // Every sampler is bound, also where no pass reads it: lavapipe reads descriptors that were
     // never written.
@@ -269,6 +279,14 @@ Result<void> GpuScene::setBackground(std::span<const SkyMap> skies)
     return m_skies.set(skies);
 }
 
+void GpuScene::setSkyLobes(const SkyLobes& lobes)
+{
+    PENUMBRA_ASSERT(lobes.texels.empty() || lobes.texels.size() == kSkyLobeTexels,
+                    "{} texels of a filtered sky, not {}", lobes.texels.size(), kSkyLobeTexels);
+    m_skyLobes = lobes;
+    ++m_skyLobesAt;
+}
+
 void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constants)
 {
     GpuSceneSlot& slot = m_slots[slotIndex];
@@ -278,7 +296,12 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.clusterCount = static_cast<std::uint32_t>(m_data.clusters.size());
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
+    frame.skyLobes = m_skyLobes.texels.empty() ? 0 : 1;
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
+    if (slot.skyLobesAt != m_skyLobesAt && frame.skyLobes == 1)
+        std::memcpy(slot.skyLobes.mapped, m_skyLobes.texels.data(),
+                    m_skyLobes.texels.size() * sizeof(vec4));
+    slot.skyLobesAt = m_skyLobesAt;
     for (std::size_t i = 0; i < m_changed.size(); ++i) {
         const InstanceInput input = rowInput(m_data, m_changed[i]);
         std::memcpy(slot.inputs.mapped + i * sizeof(input), &input, sizeof(input));

@@ -9,6 +9,7 @@
 #include "systems/gpu_skies.h"
 #include "systems/gpu_surfaces.h"
 #include "systems/scene_data.h"
+#include "systems/sky_lobes.h"
 
 #include <span>
 #include <vector>
@@ -26,9 +27,11 @@ struct GpuSceneBuffers {
 
 // What the CPU writes for one frame in flight.
 struct GpuSceneSlot {
-    Buffer frame;   // FrameConstants
-    Buffer inputs;  // [rowCount] InstanceInput of the changed rows, packed
-    Buffer changed; // [rowCount] their indices
+    Buffer frame;                 // FrameConstants
+    Buffer inputs;                // [rowCount] InstanceInput of the changed rows, packed
+    Buffer changed;               // [rowCount] their indices
+    Buffer skyLobes;              // [kSkyLobeTexels]
+    std::uint64_t skyLobesAt = 0; // which version of them
     std::uint32_t changedCount = 0;
     VkDescriptorSet set = VK_NULL_HANDLE;
     GpuSkies::Views skies{}; // in `set`
@@ -55,6 +58,10 @@ public:
     // What is drawn behind the scene from the next frame on: the sum of the maps. See
     // GpuSkies::set.
     Result<void> setBackground(std::span<const SkyMap> skies);
+
+    // What sharp surfaces mirror from the next frame on: the filtered light of all environments.
+    // Nothing, as at first: surfaces mirror what the SH of the light hold.
+    void setSkyLobes(const SkyLobes& lobes);
 
     // Writes what the frame of `slot` reads, which no frame in flight uses: constants, changed
     // rows, the maps of the background.
@@ -89,6 +96,8 @@ private:
     std::vector<std::uint32_t> m_changed; // rows to upload, each once
     std::vector<bool> m_isChanged;
     GpuSkies m_skies;
+    SkyLobes m_skyLobes;
+    std::uint64_t m_skyLobesAt = 0;
 };
 
 } // namespace penumbra

@@ -14,6 +14,7 @@ namespace penumbra {
 
 inline constexpr std::uint32_t kFirstSkyBinding = 20; // kSkyMaps of them
 inline constexpr std::uint32_t kPixelRadianceBinding = 30;
+inline constexpr std::uint32_t kSkyLobeBinding = 31;
 
 // A map as it is drawn.
 struct SkyMap {

@@ -12,6 +12,7 @@ namespace penumbra {
 // Which body of the PhysicsWorld the entity is.  Written by: buildPhysics.  Read by: stepPhysics.
 struct PhysicsBody {
     static constexpr std::string_view kName = "PhysicsBody";
+    static constexpr bool kTransient = true;
     std::uint64_t id = 0;
 };
 

@@ -10,6 +10,7 @@ namespace penumbra {
 // world space already.  Written by: addWorldTransforms, updateWorldTransforms.  Read by: gather.
 struct WorldTransform {
     static constexpr std::string_view kName = "WorldTransform";
+    static constexpr bool kTransient = true;
     static constexpr bool kRowChanges = true; // as Transform
     Transform at;
 };

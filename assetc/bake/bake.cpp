@@ -216,6 +216,15 @@ std::uint32_t rasterSideFor(std::uint32_t directions)
     return std::clamp(side / 8 * 8, 320u, 1024u);
 }
 
+Result<void> checkExtent(const MeshAsset& mesh)
+{
+    const float size = length(mesh.boundsMax - mesh.boundsMin);
+    if (size > 4 * kMinFieldRadius && size < kMaxCoordinate) // its bounding sphere has a field
+        return {};
+    return Error{fmt::format("{} m across, allowed {} to {} m; scale it, its unit is the metre",
+                             size, 4 * kMinFieldRadius, kMaxCoordinate)};
+}
+
 BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>& normals,
                     const std::vector<std::uint32_t>& indices, const BakeOptions& options,
                     Progress& progress)

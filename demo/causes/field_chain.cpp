@@ -174,9 +174,10 @@ private:
                 sum += transfer.c[k] * vec3(m_in.constants.light[k]);
             return sum;
         }
-        ShNodal transfer = transferNodal(own, receiver);
+        ShNodal through = shNodes(own);
         for (std::size_t i = 0; i < occluders.size(); ++i)
-            transfer = shMultiply(transfer, shNodes(weighted(occluders[i], weights[i])));
+            through = shMultiply(through, shNodes(weighted(occluders[i], weights[i])));
+        const ShNodal transfer = transferNodal(through, receiver);
         for (std::size_t n = 0; n < m_nodes.size(); ++n)
             sum += transfer.v[n] * (wholeLight ? vec3(m_in.constants.lightNodes[n]) : m_nodes[n]);
         return sum;

@@ -5,6 +5,7 @@
 //       static constexpr std::string_view kName = "Position"; // in files; unique in the program
 //       using Lane = float;      // optional: store x, y, z as three columns, which vectorise
 //       static constexpr bool kRowChanges = true; // optional: remember changes per row
+//       static constexpr bool kTransient = true; // optional: systems make it, files leave it out
 //       float x = 0, y = 0, z = 0;
 //   };
 //   struct Frozen { static constexpr std::string_view kName = "Frozen"; }; // empty: a tag, no
@@ -89,7 +90,8 @@ struct ComponentInfo {
 
     // For files, prefabs and snapshots.
     std::span<const Field> fields;
-    uint32_t version = 1; // T::kVersion: a file's newer component is kept aside, not read
+    bool transient = false; // T::kTransient: systems make it anew; files leave it out
+    uint32_t version = 1;   // T::kVersion: a file's newer component is kept aside, not read
     void (*clearPadding)(void* value) = nullptr; // null: no padding, or the compiler cannot tell
     // Of components whose bytes do not say it all; both or none. Found as free functions
     //   void saveBytes(const T&, std::vector<std::byte>& out);     // appends
@@ -110,11 +112,15 @@ ComponentId registerComponent(const ComponentInfo& info);
 // "Position, Velocity"
 [[nodiscard]] std::string toString(const ComponentMask& mask);
 
-// Adds what T offers for files: kFields, kVersion, saveBytes() and loadBytes().
+// Adds what T offers for files: kFields, kTransient, kVersion, saveBytes() and loadBytes().
 template <class T>
 ComponentInfo describe(ComponentInfo info)
 {
     info.fields = kFields<T>;
+    info.transient = requires
+    {
+        requires T::kTransient;
+    };
     if constexpr (requires { T::kVersion; })
         info.version = T::kVersion;
     if constexpr (requires(T & value, std::vector<std::byte> & out) {

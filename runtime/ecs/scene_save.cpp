@@ -139,7 +139,8 @@ void SceneSaver::addComponents(Entity entity, const Instance* instance, uint32_t
     const bool isPart = instance != nullptr && part > 0;
     mask.forEach([&](ComponentId id) {
         const ComponentInfo& info = componentInfo(id);
-        if (id == componentId<PrefabPart>() || (isPart && id == componentId<Parent>()))
+        if (info.transient || id == componentId<PrefabPart>() ||
+            (isPart && id == componentId<Parent>()))
             return;
         if (!info.isPlain() || (info.bytes > 0 && info.fields.empty())) {
             warn(fmt::format("component {} does not describe its members (kFields) and is left out",
@@ -213,7 +214,7 @@ Json SceneSaver::prefabJson(const Scene::NamedPrefab& prefab)
         Components components;
         prefab.prefab.components(i).forEach([&](ComponentId id) {
             const ComponentInfo& info = componentInfo(id);
-            if (id == componentId<PrefabPart>())
+            if (info.transient || id == componentId<PrefabPart>())
                 return;
             if (info.bytes > 0 && info.fields.empty()) {
                 warn(fmt::format(

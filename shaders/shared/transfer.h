@@ -117,12 +117,13 @@ PENUMBRA_FN float zonalValue(ZonalPolynomial p, float t)
     return p.c.x + t * (p.c.y + t * (p.c.z + t * (p.c.w + t * p.quartic)));
 }
 
-// T in nodal form: the factors are multiplied node by node and never truncated. The lobes go up to
+// T in nodal form from the visibility, all occluders included: factors are multiplied node by node
+// and never truncated, so their order does not matter. The lobes go up to
 // band 4, one more than the fields: with light up to band 5 their product has degree 9, which the
 // rule still integrates exactly, and the unshadowed radiance is right up to band 4 instead of 3.
-PENUMBRA_FN ShNodal transferNodal(Sh4 visibility, Receiver receiver)
+PENUMBRA_FN ShNodal transferNodal(ShNodal visibility, Receiver receiver)
 {
-    ShNodal t = shNodes(visibility);
+    ShNodal t = visibility;
     const float diffuse = (1.0f - receiver.glossFraction) * 0.318309886f;
     const ZonalPolynomial cosine = cosinePolynomial();
     const ZonalPolynomial phong = phongPolynomial(receiver.glossExponent);

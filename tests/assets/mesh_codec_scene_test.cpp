@@ -138,7 +138,8 @@ TEST(MeshCodecScene, DamagedPayloadsAreNoticed)
 {
     const auto bytes = *encodeMeshAsset(sampleScene());
     const auto glb = *readGlb(bytes);
-    for (const json& view : json::parse(glb.json)["bufferViews"]) {
+    const json document = json::parse(glb.json);
+    for (const json& view : document["bufferViews"]) {
         const std::size_t first = view["byteOffset"], size = view["byteLength"];
         for (std::size_t at = first; at < first + size; at += 41) {
             std::vector<std::byte> damaged(glb.bin.begin(), glb.bin.end());

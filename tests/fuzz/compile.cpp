@@ -38,7 +38,7 @@ void compileImported(ImportedMesh imported)
     if (mesh.indices.size() / 3 > kMaxFuzzTriangles || !cleanMesh(mesh))
         return;
     orderClusters(mesh);
-    if (!quantizeMesh(mesh))
+    if (!quantizeMesh(mesh) || !checkExtent(mesh))
         return;
     bake(mesh);
     const auto bytes = encodeMeshAsset(mesh);

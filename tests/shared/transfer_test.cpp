@@ -63,7 +63,7 @@ TEST(Transfer, EnergyOfAnOpenLambertReceiver)
 {
     RandomSphere random(3);
     Receiver receiver{vec3(0), random.direction(), random.direction(), 0, 0};
-    const ShNodal nodal = transferNodal(one(), receiver);
+    const ShNodal nodal = transferNodal(shNodes(one()), receiver);
     float sum = 0;
     for (int n = 0; n < 32; ++n)
         sum += kShNodes[n].w * nodal.v[n];
@@ -115,7 +115,7 @@ TEST(Transfer, NodalIrradianceIsExactUpToBandFour)
     for (int trial = 0; trial < 20; ++trial) {
         const vec3 n = random.direction(), d = random.direction();
         const Receiver receiver{vec3(0), n, random.direction(), 0, 0};
-        const ShNodal nodal = transferNodal(one(), receiver);
+        const ShNodal nodal = transferNodal(shNodes(one()), receiver);
         // The light P_4(d . w): its irradiance is A_4 P_4(d . n), A_4 = -pi / 24.
         double sum = 0;
         for (int i = 0; i < 32; ++i)

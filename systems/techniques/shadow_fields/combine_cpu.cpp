@@ -91,10 +91,10 @@ struct LiteralProduct {
 struct ExactProduct {
     const SceneData& scene;
     const CpuInstances& rows;
-    vec3 position, normal; // of the receiver
-    float glossFraction;
+    Receiver receiver;
+    vec3 position = receiver.position, normal = receiver.normal;
 
-    [[nodiscard]] ShNodal occlude(const ShNodal& transfer, std::uint32_t row, float weight) const
+    [[nodiscard]] ShNodal occlude(const ShNodal& before, std::uint32_t row, float weight) const
     {
         const FieldEntity entity = instanceField(rows.instances[row]);
         const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
@@ -102,11 +102,12 @@ struct ExactProduct {
         const Sh4 visibility =
             fieldVisibility(sampleTetrahedral(scene.fieldSamples, cell.sample0, t),
                             entity.bandScale * (weight * cell.decay * (1.0f / 256.0f)));
-        return shMultiply(transfer, shNodes(shRotate(visibility, entity.rotation)));
+        return shMultiply(before, shNodes(shRotate(visibility, entity.rotation)));
     }
 
-    [[nodiscard]] vec3 lightThrough(const ShNodal& transfer, std::uint32_t row) const
+    [[nodiscard]] vec3 lightThrough(const ShNodal& through, std::uint32_t row) const
     {
+        const ShNodal transfer = transferNodal(through, receiver);
         const FieldEntity light = instanceField(rows.instances[row]);
         const FieldGrid& grid = light.grid;
         const FieldCell cell = fieldCell(fieldPoint(light, position), grid);
@@ -125,13 +126,14 @@ struct ExactProduct {
         }
         const float matte = irradianceCorrection(fieldDeviation(all, scale),
                                                  normalize(light.radiiFromWorld * normal));
-        const float correction = mix(matte, 1.0f, glossFraction);
+        const float correction = mix(matte, 1.0f, receiver.glossFraction);
         return correction * max(b, vec3(0));
     }
 };
 
 // Through the occluders near to far, with each light where it stands. Adds the lights' part to
-// `sum`; returns the transfer behind the last occluder, for the environment.
+// `sum`; returns the transfer (kernel exact: the visibility) behind the last occluder, for the
+// environment.
 template <class Product, class Transfer>
 Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& entities, vec3& sum)
 {
@@ -159,6 +161,20 @@ Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& 
         transfer =
             product.occlude(transfer, entities.occluders[next], risen(entities.occluders[next]));
     return transfer;
+}
+
+vec3 sharpReflection(const Receiver& receiver, const ShNodal& visibility,
+                     const FrameConstants& frame, const SkyLobes& sky)
+{
+    const ZonalPolynomial phong = phongPolynomial(receiver.glossExponent);
+    GlossSums sums{};
+    for (int n = 0; n < 32; ++n) {
+        const float gloss = visibility.v[n] * glossAt(receiver, phong, vec3(kShNodes[n]));
+        sums.visible += gloss * kShNodes[n].w;
+        sums.reflected += gloss * vec3(frame.lightNodes[n]);
+    }
+    return skyGloss(receiver, sums,
+                    filteredSky(sky, skyLobeDirection(receiver), receiver.glossExponent));
 }
 
 // The lists of pass entity_sort for one cluster.
@@ -246,7 +262,7 @@ std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstan
 
 void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
                     const FrameConstants& frame, const ClusterEntities& entities,
-                    std::span<vec4> radiance)
+                    std::span<vec4> radiance, const SkyLobes* sky)
 {
     const SceneCluster& cluster = scene.clusters[entities.cluster];
     const GpuInstance& self = instances.instances[cluster.instance];
@@ -265,12 +281,14 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);
         } else {
-            const ShNodal transfer = walk(
-                ExactProduct{scene, instances, receiver.position, receiver.normal,
-                             receiver.glossFraction},
-                transferNodal(shRotate(ownVisibility, worldFromObject), receiver), entities, sum);
+            const ShNodal visibility =
+                walk(ExactProduct{scene, instances, receiver},
+                     shNodes(shRotate(ownVisibility, worldFromObject)), entities, sum);
+            const ShNodal transfer = transferNodal(visibility, receiver);
             for (int n = 0; n < 32; ++n)
                 sum += transfer.v[n] * vec3(frame.lightNodes[n]);
+            if (sky != nullptr && receiver.glossFraction > 0)
+                sum += sharpReflection(receiver, visibility, frame, *sky);
         }
         radiance[cluster.firstRadiance + v] =
             vec4(vec3(self.material) * sum + vec3(self.emission), 1);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "systems/scene_data.h"
+#include "systems/sky_lobes.h"
 #include "systems/techniques/shadow_fields/kernel.h"
 
 namespace penumbra {
@@ -33,9 +34,9 @@ std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstan
                                          const FrameConstants& frame);
 
 // As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance`
-// [scene.radianceCount].
+// [scene.radianceCount]. `sky`: as GpuScene::setSkyLobes; null: none.
 void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
                     const FrameConstants& frame, const ClusterEntities& cluster,
-                    std::span<vec4> radiance);
+                    std::span<vec4> radiance, const SkyLobes* sky = nullptr);
 
 } // namespace penumbra

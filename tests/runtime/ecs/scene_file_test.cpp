@@ -46,6 +46,12 @@ struct SceneFile : testing::Test {
     void TestBody() override {}
 };
 
+struct Cache {
+    static constexpr std::string_view kName = "test.Cache";
+    static constexpr bool kTransient = true;
+    uint32_t row = 7;
+};
+
 std::string entities(const std::string& list)
 {
     return R"({"version": 1, "entities": [)" + list + "]}";
@@ -309,6 +315,19 @@ TEST_F(SceneFile, ValuesThatCannotBeReadAgainAreNotSaved)
     const auto saved = saveScene(world, scene);
     ASSERT_EQ((*saved).warnings.size(), 1u);
     EXPECT_NE((*saved).warnings[0].find("test.Position"), std::string::npos);
+}
+
+TEST_F(SceneFile, WhatSystemsMakeAnewIsNotSaved)
+{
+    world.create(Clock{3}, Cache{});
+    Scene::NamedPrefab& prefab = scene.prefabs.emplace_back();
+    prefab.name = "cached";
+    prefab.prefab.set(prefab.prefab.addPart(), Cache{}, Clock{4});
+    const auto saved = saveScene(world, scene, &assets);
+    ASSERT_TRUE(saved) << saved.error().message;
+    EXPECT_TRUE((*saved).warnings.empty());
+    EXPECT_EQ((*saved).text.find("Cache"), std::string::npos);
+    EXPECT_NE((*saved).text.find("cached"), std::string::npos);
 }
 
 TEST_F(SceneFile, PrefabsAreInstancedOverriddenAndSavedAsSuch)

@@ -37,19 +37,20 @@ MeshAsset makeBall()
     return mesh;
 }
 
-Environment makeSky()
+// `sun`: radiance of a disc of 0.2 radians, near the lamp.
+Environment makeSky(std::uint32_t width = 64, std::uint32_t height = 32, vec3 sun = vec3(0))
 {
-    constexpr std::uint32_t kWidth = 64, kHeight = 32;
     std::vector<vec3> map;
-    for (std::uint32_t y = 0; y < kHeight; ++y)
-        for (std::uint32_t x = 0; x < kWidth; ++x) {
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
             const vec3 d =
                 equirectDirection((vec2(static_cast<float>(x), static_cast<float>(y)) + 0.5f) /
-                                  vec2(kWidth, kHeight));
+                                  vec2(static_cast<float>(width), static_cast<float>(height)));
             const float lamp = std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f))));
-            map.push_back(vec3(0.3f) + lamp * lamp * vec3(3, 2, 1));
+            const bool disc = dot(d, normalize(vec3(0.5f, 1, 1))) > std::cos(0.2f);
+            map.push_back(vec3(0.3f) + lamp * lamp * vec3(3, 2, 1) + (disc ? sun : vec3(0)));
         }
-    return makeEnvironment(kWidth, kHeight, std::move(map));
+    return makeEnvironment(width, height, std::move(map));
 }
 
 // The sky's first 16 coefficients: light that the products see whole, so that what is left is the
@@ -78,26 +79,27 @@ protected:
         return frame;
     }
 
-    // Radiance of every receiver by the CPU twin.
-    std::vector<vec4> onCpu(const MeshMaterial& material, vec3 eye, Kernel kernel = Kernel::Exact)
+    // Radiance of every receiver by the CPU twin. `lobes`: the sky filtered, or null.
+    std::vector<vec4> onCpu(const MeshMaterial& material, vec3 eye, Kernel kernel = Kernel::Exact,
+                            const SkyLobes* lobes = nullptr)
     {
         m_data.instances[0].material = material;
         const CpuInstances rows = updateInstances(m_data);
         std::vector<vec4> radiance(m_data.radianceCount);
         for (const ClusterEntities& cluster : cullAndSort(m_data, rows, from(eye)))
-            combineCluster(kernel, m_data, rows, from(eye), cluster, radiance);
+            combineCluster(kernel, m_data, rows, from(eye), cluster, radiance, lobes);
         radiance.resize(m_data.vertexCount);
         return radiance;
     }
 
-    // Root mean square error against ray tracing over the mean of the truth, all channels.
-    double errorAgainstRays(const MeshMaterial& material, vec3 eye, Kernel kernel)
+    // Root mean square error of `test` against ray tracing over the mean of the truth, all
+    // channels, where the eye sees the ball.
+    double errorAgainstRays(const std::vector<vec4>& test, const MeshMaterial& material, vec3 eye,
+                            const ReferenceLight& sky)
     {
-        const std::vector<vec4> test = onCpu(material, eye, kernel);
         const ReferenceInstance instances[] = {{&m_ball}};
         const MeshMaterial materials[] = {material};
         const ReferenceScene scene = take(ReferenceScene::build(instances, materials));
-        const ReferenceLight sky = ReferenceLight::fromSh4(m_sky.sh4);
         std::vector<ReferenceReceiver> receivers;
         for (std::size_t i = 0; i < m_ball.positions.size(); ++i)
             receivers.push_back({m_ball.positions[i], m_ball.normals[i],
@@ -177,12 +179,63 @@ TEST_F(Gloss, TheLobeAgreesWithRays)
          {Bound{0, 0.01, 0.015}, Bound{2, 0.005, 0.01}, Bound{4, 0.008, 0.04}, Bound{8, 0.02, 0.09},
           Bound{16, 0.03, 0.14}, Bound{32, 0.04, 0.18}, Bound{64, 0.05, 0.2}}) {
         const MeshMaterial mirror{vec3(0.8f), 1, bound.exponent};
-        const double exact = errorAgainstRays(mirror, kEye, Kernel::Exact);
-        const double literal = errorAgainstRays(mirror, kEye, Kernel::Literal);
+        const ReferenceLight sky = ReferenceLight::fromSh4(m_sky.sh4);
+        const double exact = errorAgainstRays(onCpu(mirror, kEye), mirror, kEye, sky);
+        const double literal =
+            errorAgainstRays(onCpu(mirror, kEye, Kernel::Literal), mirror, kEye, sky);
         EXPECT_LT(exact, bound.exact) << bound.exponent;
         EXPECT_LT(literal, bound.literal) << bound.exponent;
         RecordProperty(fmt::format("exponent{}", bound.exponent),
                        fmt::format("exact {:.4f} literal {:.4f}", exact, literal));
+    }
+}
+
+// Under a sky with a sun, whose SH ring.
+TEST_F(Gloss, SharpLobesMirrorTheSkyWithoutRings)
+{
+    m_sky = makeSky(256, 128, vec3(60, 50, 40));
+    const SkyLobes lobes = filterSky(m_sky);
+    const ReferenceLight sky = ReferenceLight::fromMap(m_sky);
+    struct Bound {
+        float exponent;
+        double error;
+    };
+    for (const Bound& bound : {Bound{8, 0.12}, Bound{16, 0.08}, Bound{48, 0.1}, Bound{256, 0.09}}) {
+        const MeshMaterial mirror{vec3(0.8f), 1, bound.exponent};
+        const std::vector<vec4> with = onCpu(mirror, kEye, Kernel::Exact, &lobes);
+        const double error = errorAgainstRays(with, mirror, kEye, sky);
+        const double without = errorAgainstRays(onCpu(mirror, kEye), mirror, kEye, sky);
+        EXPECT_LT(error, bound.error) << bound.exponent;
+        EXPECT_LT(3 * error, without) << bound.exponent;
+        for (const vec4& radiance : with)
+            EXPECT_GE(radiance.r, 0);
+        RecordProperty(fmt::format("exponent{}", bound.exponent),
+                       fmt::format("{:.4f} without {:.4f}", error, without));
+    }
+    // The lobes that SH can carry are left alone.
+    const MeshMaterial wide{vec3(0.8f), 1, 4};
+    EXPECT_EQ(difference(onCpu(wide, kEye), onCpu(wide, kEye, Kernel::Exact, &lobes)), 0);
+}
+
+TEST_F(Gloss, TheGpuMirrorsTheSkyAsItsTwinDoes)
+{
+    const SkyLobes lobes = filterSky(m_sky);
+    m_data.instances[0].material = kGlossy;
+    GpuScene scene = take(GpuScene::create(device(), m_data, m_sky, 2));
+    const FramePasses passes = take(createFramePasses(device(), false));
+    FrameTargets targets = take(createFrameTargets(device(), passes, {32, 32}));
+    FrameRing ring(device());
+    SkyLobes dimmed;
+    addTurned(dimmed, lobes, 0.5f, vec4(0, 0.6f, 0, 0.8f));
+    for (const SkyLobes& now : {lobes, dimmed, SkyLobes{}, lobes}) {
+        scene.setSkyLobes(now);
+        recordFrame(take(ring.beginFrame()), passes, scene, from(kEye), {}, targets);
+        take(ring.endFrame());
+        take(ring.waitIdle());
+        std::vector<vec4> gpu = take(readBackAs<vec4>(device(), scene.buffers().radiance));
+        gpu.resize(m_data.vertexCount);
+        const SkyLobes* const twin = now.texels.empty() ? nullptr : &now;
+        EXPECT_LT(difference(gpu, onCpu(kGlossy, kEye, Kernel::Exact, twin)), 1e-4);
     }
 }
 
