@@ -41,7 +41,8 @@ const Sh4& nodeAt(const Grid& grid, int side, int x, int y)
         y = y < 0 ? -y : 2 * last - y;
         x = last - x;
     }
-    return grid[static_cast<std::size_t>(y * side + x)];
+    return grid[static_cast<std::size_t>(y) * static_cast<std::size_t>(side) +
+                static_cast<std::size_t>(x)];
 }
 
 // Every second node: its value, or the mean around it with weights 1 2 1.

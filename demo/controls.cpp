@@ -28,13 +28,14 @@ void onCursor(GLFWwindow* window, double x, double y)
     if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS) {
         camera.yaw -= dx * kRadiansPerPixel;
         camera.pitch =
-            std::clamp(camera.pitch + dy * kRadiansPerPixel, 0.02f, 1.5f); // stays above the floor
+            std::clamp(camera.pitch + dy * kRadiansPerPixel, c.ground ? 0.02f : -1.5f, 1.5f);
     } else if (glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS) {
         const float metresPerPixel = camera.distance * 0.001f;
         camera.target +=
             metresPerPixel *
             (-dx * vec3(std::cos(camera.yaw), 0, -std::sin(camera.yaw)) + dy * vec3(0, 1, 0));
-        camera.target.y = std::max(camera.target.y, 0.0f);
+        if (c.ground)
+            camera.target.y = std::max(camera.target.y, 0.0f);
     }
 }
 
@@ -43,8 +44,8 @@ void onScroll(GLFWwindow* window, double, double steps)
     auto& c = *static_cast<Controls*>(glfwGetWindowUserPointer(window));
     if (Overlay::wantsMouse())
         return;
-    c.camera.distance =
-        std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)), 0.8f, 30.0f);
+    c.camera.distance = std::clamp(c.camera.distance * std::pow(0.9f, static_cast<float>(steps)),
+                                   16 * c.camera.near, 0.3f * c.camera.far);
 }
 
 void onKey(GLFWwindow* window, int key, int, int action, int)
@@ -96,7 +97,7 @@ Result<void> controlSky(GLFWwindow* window, Controls& c, DemoScene& scene,
     constexpr float kRadiansPerSecond = 0.8f, kStopsPerSecond = 1.5f, kFadeSeconds = 2;
     const auto direction = [&](int more, int less) {
         const auto held = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1 : 0; };
-        return static_cast<float>(held(more) - held(less)) * seconds;
+        return Overlay::wantsKeyboard() ? 0 : static_cast<float>(held(more) - held(less)) * seconds;
     };
     if (const float turn = direction(GLFW_KEY_RIGHT, GLFW_KEY_LEFT); turn != 0)
         turnSky(scene.world, turn * kRadiansPerSecond);

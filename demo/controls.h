@@ -13,6 +13,7 @@ namespace penumbra {
 struct Controls {
     Camera camera;
     double cursorX = 0, cursorY = 0;
+    bool ground = false; // the camera stays above it
     bool paused = false, restart = false, panel = true, nextSky = false;
     PaintKeys paint;
     Kernel kernel = Kernel::Exact;

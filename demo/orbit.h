@@ -9,7 +9,7 @@ namespace penumbra {
 // A circle about the vertical axis through `center`.  Written by: spawn.  Read by: moveOrbits.
 struct Orbit {
     static constexpr std::string_view kName = "Orbit";
-    vec3 center{0};   // world, metres
+    vec3 center{0};   // world, or the Parent's space, metres
     float radius = 0; // metres
     float speed = 0;  // rad/s, counter-clockwise from above
     float phase = 0;  // rad at time 0

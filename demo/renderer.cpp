@@ -16,7 +16,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoSce
     std::unique_ptr<Renderer> renderer(new Renderer(device, scene));
     Result<SceneData> data = extractScene(scene.world, scene.assets);
     if (!data)
-        return data.error();
+        return scene.path.empty() ? data.error() : fail(data.error(), scene.path.string());
     Result<FramePasses> passes = createFramePasses(device, !data->lights.empty());
     if (!passes)
         return passes.error();
@@ -50,8 +50,7 @@ Result<void> Renderer::apply(const SceneChanges& changes)
         const std::vector<SceneInstance>& instances = m_scene.data().instances;
         const bool mirrors =
             std::any_of(instances.begin(), instances.end(), [](const SceneInstance& instance) {
-                return instance.material.glossFraction > 0 &&
-                       skyLobeShare(instance.material.glossExponent) > 0;
+                return mirrorsSky(instance.material.glossFraction, instance.material.glossExponent);
             });
         if (mirrors && (changes.relit || !m_mirrors))
             m_scene.setSkyLobes(m_lighting.lobes());

@@ -9,7 +9,7 @@ namespace penumbra {
 
 void SavePanel::draw(DemoScene& scene, const Camera& camera, const std::filesystem::path& assets)
 {
-    const std::string own = scene.name + ".json";
+    const std::string own = scene.path.empty() ? scene.name + ".json" : scene.path.string();
     ImGui::SetNextItemWidth(-60);
     ImGui::InputTextWithHint("##file", own.c_str(), m_file, sizeof(m_file));
     ImGui::SameLine();

@@ -11,7 +11,7 @@ public:
     void draw(DemoScene& scene, const Camera& camera, const std::filesystem::path& assets);
 
 private:
-    char m_file[256] = {}; // empty: the scene's name
+    char m_file[256] = {}; // empty: the scene's own, or its name
     std::string m_outcome;
 };
 

@@ -19,8 +19,9 @@ struct DemoScene {
     std::string name;
     AssetStore assets;
     ecs::World world;
-    ecs::Scene file;                     // what a scene file says beyond the world
-    std::optional<PhysicsWorld> physics; // nothing: no entity has a RigidBody
+    std::filesystem::path path;          // of its file; empty: made by code
+    ecs::Scene file;                     // what the file says beyond the world
+    std::optional<PhysicsWorld> physics; // loadScene; nothing: no entity has a RigidBody
     Camera camera;
     std::vector<std::string> warnings; // of its file
 

@@ -5,6 +5,7 @@
 #include "demo/sky_motion.h"
 #include "runtime/file.h"
 #include "shaders/shared/instance.h"
+#include "systems/physics_system.h"
 #include "systems/scene_components.h"
 #include "systems/transforms.h"
 
@@ -20,6 +21,11 @@ constexpr const char* kDefaultSky = "courtyard";
 bool isEnvironment(const ecs::Field& field)
 {
     return field.kind == "environment";
+}
+
+const char* extensionOf(const ecs::Field& field)
+{
+    return isEnvironment(field) ? ".env" : ".glb";
 }
 
 void registerAll()
@@ -93,9 +99,9 @@ SceneAssetNames::SceneAssetNames(AssetStore& store, std::filesystem::path beside
 
 Result<std::uint32_t> SceneAssetNames::handleOf(const ecs::Field& field, const std::string& name)
 {
-    const std::string extension = isEnvironment(field) ? ".env" : ".glb";
+    const std::string extension = extensionOf(field);
     for (const std::filesystem::path& folder : {m_beside, m_assets})
-        for (const std::string& file : {name, name + extension}) {
+        for (const std::string& file : {name + extension, name}) {
             const std::filesystem::path path = (folder / file).lexically_normal();
             std::error_code ec;
             if (!std::filesystem::is_regular_file(path, ec))
@@ -124,7 +130,9 @@ std::string SceneAssetNames::nameOf(const ecs::Field& field, std::uint32_t handl
     const std::filesystem::path path =
         isEnvironment(field) ? m_store.environmentPath(asset) : m_store.path(asset);
     std::error_code ec;
-    if (std::filesystem::equivalent(path.parent_path(), m_assets, ec))
+    const bool hidden = std::filesystem::exists(m_beside / path.filename(), ec);
+    if (std::filesystem::equivalent(path.parent_path(), m_assets, ec) && !hidden &&
+        path.extension() == extensionOf(field))
         return path.stem().string();
     const std::filesystem::path relative = std::filesystem::proximate(
         path, m_beside.empty() ? std::filesystem::path(".") : m_beside, ec);
@@ -140,6 +148,7 @@ Result<std::unique_ptr<DemoScene>> loadSceneFile(const std::filesystem::path& pa
     registerAll();
     auto scene = std::make_unique<DemoScene>();
     scene->name = path.stem().string();
+    scene->path = path;
     SceneAssetNames names(scene->assets, path.parent_path(), options.assets);
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     Result<ecs::LoadedScene> loaded = ecs::loadScene(scene->world, scene->file, text, &names);
@@ -155,6 +164,9 @@ Result<std::unique_ptr<DemoScene>> loadSceneFile(const std::filesystem::path& pa
             scene->camera = camera;
         placed = true;
     });
+    if (scene->camera.near >= scene->camera.far)
+        return Error{fmt::format("{}: its Camera's near, {} m, is not before far, {} m",
+                                 path.string(), scene->camera.near, scene->camera.far)};
     if (!placed)
         scene->camera = cameraOfAll(scene->world, scene->assets);
     return scene;
@@ -174,6 +186,13 @@ Result<std::vector<std::string>> saveSceneFile(DemoScene& scene, const Camera& c
         scene.world.create(ecs::Name("camera"), camera);
     else
         scene.world.set(eye, camera);
+    if (scene.physics)
+        scene.world.query<RigidBody, const PhysicsBody>().each(
+            [&](RigidBody& body, const PhysicsBody& moved) {
+                const Motion motion = scene.physics->motion(moved.id);
+                body.velocity = motion.velocity;
+                body.angularVelocity = motion.angularVelocity;
+            });
     const SceneAssetNames names(scene.assets, path.parent_path(), assets);
     const Result<ecs::SavedScene> saved = ecs::saveScene(scene.world, scene.file, &names);
     if (!saved)

@@ -23,14 +23,16 @@ private:
     std::filesystem::path m_beside, m_assets;
 };
 
-// The entities of the file as a scene. What files of parts do not have is added: a camera that sees
-// all meshes, and, where nothing shines, the sky `options.environment` or that of the demo.
+// The entities of the file as a scene, without its physics, which loadScene adds. What files of
+// parts do not have is added: a camera that sees all meshes, and, where nothing shines, a sky.
+// `options.environment` takes the place of the file's first sky, or is added.
 // Error: missing, damaged, or of unknown assets; the message names file and place.
 Result<std::unique_ptr<DemoScene>> loadSceneFile(const std::filesystem::path& path,
                                                  const SceneOptions& options);
 
-// The scene as it stands, with the camera where it stands. Returns warnings. Error: a value that no
-// file can hold, or the folder refuses the file.
+// The scene as it stands: places and speeds of now, and `camera`, which the scene's Camera entity
+// (made if there is none) takes. What moves by a script starts again when loaded. Returns warnings.
+// Error: a value that no file can hold, or the folder refuses the file.
 Result<std::vector<std::string>> saveSceneFile(DemoScene& scene, const Camera& camera,
                                                const std::filesystem::path& path,
                                                const std::filesystem::path& assets);

@@ -184,8 +184,10 @@ Result<void> runWindow(const DemoOptions& options)
     if (!swapchain)
         return swapchain.error();
 
-    Controls controls{
-        .camera = show->scene->camera, .kernel = options.kernel, .receivers = options.receivers};
+    Controls controls{.camera = show->scene->camera,
+                      .ground = show->scene->ground(),
+                      .kernel = options.kernel,
+                      .receivers = options.receivers};
     listenTo(window, controls);
     Result<std::unique_ptr<Overlay>> overlay = Overlay::create(
         *device, window, show->renderer->display().format, show->renderer->ring().framesInFlight());

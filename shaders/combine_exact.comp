@@ -157,7 +157,7 @@ void main()
     for (; next < occluders; ++next)
         occlude(listed(kListOccluders + next));
 
-    const bool sharp = frame.skyLobes != 0u && self.material.w * skyLobeShare(self.material1.x) > 0.0;
+    const bool sharp = frame.skyLobes != 0u && mirrorsSky(self.material.w, self.material1.x);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const ShNodal transfer = transferNodal(visibility[v], receiver[v]);
         for (int n = 0; n < 32; ++n)

@@ -131,7 +131,8 @@ struct Ground {
     static constexpr std::string_view kName = "Ground";
 };
 
-// What the picture is seen from.  Written by: spawn, input.  Read by: frame.
+// What the picture is seen from at first; the mouse moves a copy.  Written by: spawn, save.  Read
+// by: scene start.
 struct Camera {
     static constexpr std::string_view kName = "Camera";
     vec3 target{0};                // world, metres
@@ -144,7 +145,7 @@ struct Camera {
 template <>
 inline constexpr auto ecs::kFields<Camera> = ecs::fields(
     PENUMBRA_FIELD(Camera, target, .unit = "m"),
-    PENUMBRA_FIELD(Camera, distance, .unit = "m", .min = 0, .max = 1e6),
+    PENUMBRA_FIELD(Camera, distance, .unit = "m", .min = 1e-6, .max = 1e6),
     PENUMBRA_FIELD(Camera, yaw, .unit = "rad"), PENUMBRA_FIELD(Camera, pitch, .unit = "rad"),
     PENUMBRA_FIELD(Camera, fieldOfView, .unit = "rad", .min = 0.01, .max = 3.1),
     PENUMBRA_FIELD(Camera, near, .unit = "m", .min = 1e-6, .max = 1e6),

@@ -28,7 +28,7 @@ public:
     [[nodiscard]] const LightSh& light() const { return m_light; }
 
     // The same sum, filtered for sharp reflections. Made when asked for: 2 ms per light, and as
-    // long as filterSky for a map that is new.
+    // long as filterSky for a map that is new or, over ground, was tilted.
     const SkyLobes& lobes();
 
     // The lights that are drawn: the kSkyMaps strongest, by intensity times mean luminance.

@@ -6,6 +6,8 @@ namespace penumbra {
 
 namespace {
 
+constexpr float kMinScale = 1e-6f, kMaxScale = 1e6f; // in the world, as Transform's own
+
 // Error: the entity's asset cannot be what `use` says.
 Result<void> needField(const ecs::World& world, ecs::Entity entity, const AssetStore& assets,
                        AssetHandle asset, FieldKind kind, std::string_view use)
@@ -76,10 +78,17 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
     world.query<const Transform, const MeshInstance>().each(
         [&](ecs::Entity entity, const Transform&, const MeshInstance& mesh) {
             if (!assets.hasMesh(mesh.asset)) {
-                failed = Error{world.describe(entity) + ": its MeshInstance names no asset; name "
-                                                        "one, or take the component away"};
+                if (failed)
+                    failed =
+                        Error{world.describe(entity) + ": its MeshInstance names no asset; name "
+                                                       "one, or take the component away"};
                 return;
             }
+            if (const float scale = worldTransform(world, entity).scale;
+                !(scale >= kMinScale && scale <= kMaxScale) && failed)
+                failed = Error{fmt::format("{}: its scale in the world is {}, allowed {} to {}; "
+                                           "scale it, or what it hangs on",
+                                           world.describe(entity), scale, kMinScale, kMaxScale)};
             SceneInstance instance;
             instance.mesh = mesh.asset.index;
             place(instance, worldTransform(world, entity));
@@ -124,6 +133,8 @@ Result<SceneData> extractScene(ecs::World& world, const AssetStore& assets)
                                                         "environment; compile one with assetc "
                                                         "environment"};
         });
+    if (failed && instances.empty())
+        failed = Error{"the scene shows nothing; give an entity a Transform and a MeshInstance"};
     if (!failed)
         return failed.error();
     SceneData data = buildSceneData(assets.meshes(), std::move(instances), std::move(lights));

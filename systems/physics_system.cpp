@@ -49,14 +49,17 @@ Result<BodyDescription> describeBody(const ecs::World& world, ecs::Entity entity
     Result<CollisionShape> shape = shapes.of(mesh->asset, at->scale, body.shape);
     if (!shape)
         return shape.error();
-    return BodyDescription{.shape = *shape,
-                           .mass = body.density * shape->volume(),
-                           .pose = {at->position, quat(at->rotation.w, at->rotation.x,
-                                                       at->rotation.y, at->rotation.z)},
-                           .motion = {body.velocity, body.angularVelocity},
-                           .friction = body.friction,
-                           .rollingFriction = body.rollingFriction,
-                           .restitution = body.restitution};
+    BodyDescription described{.shape = *shape,
+                              .mass = body.density * shape->volume(),
+                              .pose = {at->position, quat(at->rotation.w, at->rotation.x,
+                                                          at->rotation.y, at->rotation.z)},
+                              .motion = {body.velocity, body.angularVelocity},
+                              .friction = body.friction,
+                              .rollingFriction = body.rollingFriction,
+                              .restitution = body.restitution};
+    if (const std::string fault = bodyFault(described); !fault.empty())
+        return Error{fault};
+    return described;
 }
 
 } // namespace

@@ -18,7 +18,8 @@ struct PhysicsBody {
 
 // A body for every RigidBody, in the order of the query, each with its PhysicsBody; where there
 // is a Ground, what is below y = 0 is solid. Nothing: no entity has a RigidBody. Error: an entity
-// has no mesh or hangs on another, or its mesh makes no shape; the message names it.
+// has no mesh or hangs on another, its mesh makes no shape, or it weighs more than
+// 10^6 kg; the message names it.
 Result<std::optional<PhysicsWorld>> buildPhysics(ecs::World& world, const AssetStore& assets);
 
 // System: steps the physics by `seconds` and writes the Transform of every PhysicsBody that moved,

@@ -1,5 +1,6 @@
 #include "systems/sky_lobes.h"
 
+#include "runtime/assert.h"
 #include "shaders/shared/environment.h"
 #include "shaders/shared/instance.h"
 
@@ -90,7 +91,7 @@ vec3 lobeMean(const Mip& mip, vec3 direction, std::uint32_t level)
             (cosine - std::cos(rowPolar) * std::cos(polar)) / std::max(sines, 1e-9);
         const double half = turn >= 1 ? 0 : turn <= -1 ? kPi : std::acos(turn);
         const double columns = half / (2 * kPi) * mip.width + 1;
-        if (2 * columns + 1 >= mip.width) {
+        if (2 * columns + 3 >= mip.width) {
             sum.add(mip, y, 0, mip.width);
             continue;
         }
@@ -160,8 +161,7 @@ SkyLobes filterSky(const Environment& environment)
 
 vec3 filteredSky(const SkyLobes& sky, vec3 direction, float exponent)
 {
-    if (sky.texels.empty())
-        return vec3(0);
+    PENUMBRA_ASSERT(sky.texels.size() == kSkyLobeTexels, "{} texels", sky.texels.size());
     const float level = skyLobeLevel(exponent);
     const std::uint32_t lower = std::min(static_cast<std::uint32_t>(level), kSkyLobeLevels - 2);
     return vec3(mix(blended(sky, skyLobeCell(direction, lower)),

@@ -37,17 +37,19 @@ void addWorldTransforms(ecs::World& world)
     for (const ecs::Hierarchy::Slot& slot : world.hierarchy().order())
         if (world.has<Transform>(slot.entity))
             world.add(slot.entity, WorldTransform{});
-    follow(world.query<const WorldTransform, const Transform>(), world.hierarchy(),
+    follow(world.query<const WorldTransform, const Transform, ecs::WithDisabled>(),
+           world.hierarchy(),
            [&](ecs::Entity entity, const WorldTransform& now) { world.set(entity, now); });
 }
 
 void updateWorldTransforms(const ecs::SystemContext& context)
 {
     bool stale = false;
-    context.query<ecs::With<WorldTransform>, ecs::Changed<Transform>>().each(
+    context.query<ecs::With<WorldTransform>, ecs::Changed<Transform>, ecs::WithDisabled>().each(
         [&](ecs::Entity) { stale = true; });
     if (stale)
-        follow(context.query<const WorldTransform, const Transform>(), context.hierarchy(),
+        follow(context.query<const WorldTransform, const Transform, ecs::WithDisabled>(),
+               context.hierarchy(),
                [&](ecs::Entity entity, const WorldTransform& now) { context.set(entity, now); });
 }
 

@@ -7,13 +7,15 @@
 namespace penumbra {
 
 // Transform to world space, of entities that have a Parent or children; that of all others is in
-// world space already.  Written by: addWorldTransforms, updateWorldTransforms.  Read by: gather.
+// world space already.  Written by: addWorldTransforms, updateWorldTransforms.  Read by:
+// extractScene, gather, pick.
 struct WorldTransform {
     static constexpr std::string_view kName = "WorldTransform";
     static constexpr bool kTransient = true;
     static constexpr bool kRowChanges = true; // as Transform
-    Transform at;
+    Transform at;                             // world
 };
+static_assert(sizeof(WorldTransform) == 32 && std::is_trivially_copyable_v<WorldTransform>);
 
 // A child's transform in the space of `parent`'s parent.
 Transform transformed(const Transform& parent, const Transform& child);

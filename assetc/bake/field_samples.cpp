@@ -78,7 +78,7 @@ std::vector<Sh4> refineNodes(const FieldSamples& samples, std::size_t grid, std:
         const auto first =
             samples.nodes.begin() + static_cast<std::ptrdiff_t>(firstNode(head, grid * shells + s));
         const std::vector<Sh4> refined =
-            refineNodes({first, first + static_cast<std::ptrdiff_t>(own * own)}, own, side);
+            refineNodes({first, first + std::ptrdiff_t{own} * own}, own, side);
         const float r = shellRadius(head, s), decay = fieldDecay(r * r);
         for (std::size_t i = 0; i < nodes; ++i)
             for (int k = 0; k < 16; ++k)

@@ -26,8 +26,8 @@ ProbePoints drawProbes(const ShadowField& field)
     for (std::uint32_t s = 0; s + 1 < shells; ++s)
         for (std::uint32_t tile = 0; tile < kTiles * kTiles; ++tile) {
             for (std::uint32_t i = 0; i < perTile; ++i) {
-                const vec2 corner(static_cast<float>(tile % kTiles),
-                                  static_cast<float>(tile / kTiles));
+                const std::uint32_t column = tile % kTiles, row = tile / kTiles;
+                const vec2 corner(static_cast<float>(column), static_cast<float>(row));
                 const float u = uniform(), v = uniform(), t = uniform();
                 const vec3 direction =
                     octahedralDirection((corner + vec2(u, v)) / static_cast<float>(kTiles));

@@ -32,6 +32,9 @@ std::vector<ChainReceiver> chooseReceivers(const FieldChainInput& in,
         const MeshRange& mesh = in.data.meshes[instance.mesh];
         if (instance.emission * mesh.emission != vec3(0))
             continue;
+        if (in.kernel == Kernel::Exact &&
+            mirrorsSky(instance.material.glossFraction, instance.material.glossExponent))
+            continue; // not by SH alone
         for (std::uint32_t v = 0; v < kClusterReceivers; v += kClusterReceivers / kPerCluster)
             if (cluster.firstReceiver + v < mesh.firstReceiver + mesh.vertexCount)
                 chosen.push_back({&visible[i], cluster.instance, cluster.firstReceiver + v,

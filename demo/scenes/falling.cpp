@@ -2,7 +2,6 @@
 
 #include "demo/scenes/objects.h"
 
-#include <algorithm>
 #include <glm/gtc/constants.hpp>
 
 namespace penumbra {

@@ -1,11 +1,13 @@
-// Sharp reflections of the sky. The SH of the light and of a Phong lobe end at band 5: from
-// exponent 8 on their product rings, a bright sky leaves dark spots on a ball. Sharp lobes take
-// their light from maps of the sky that were filtered by whole lobes, one per power of two of the
-// exponent:
+// Sharp reflections of the sky. The SH of the light end at band 5, those of a Phong lobe at band 4:
+// from exponent 8 on their product rings, a bright sky leaves dark spots on a ball. Sharp lobes
+// take their light from maps of the sky that were filtered by whole lobes, one per power of two of
+// the exponent:
 //     integral of L V f  ->  P A
-// P the filtered sky where f is largest, A the integral of V f with the same band-limited f as
-// everywhere (transfer.h): what SH can say of an occluder in the way of the lobe. This is the split
-// of radiance and visibility of Karis ("Real shading in Unreal Engine 4", SIGGRAPH course 2013).
+// L the sky's radiance, V the visibility, f the Phong lobe times cosine (transfer.h, without g and
+// the diffuse part), P the filtered sky where f is largest, A the integral of V f with the same
+// band-limited f as everywhere: what SH can say of an occluder in the way of the lobe. This is the
+// split of radiance and visibility of Karis ("Real shading in Unreal Engine 4", SIGGRAPH course
+// 2013).
 #ifndef PENUMBRA_SHADERS_SHARED_GLOSS_H
 #define PENUMBRA_SHADERS_SHARED_GLOSS_H
 #include "shaders/shared/transfer.h"
@@ -66,6 +68,12 @@ PENUMBRA_FN vec3 skyLobeDirection(Receiver receiver)
 PENUMBRA_FN float skyLobeShare(float exponent)
 {
     return clamp(log2(max(exponent, 1.0f)) - 2.0f, 0.0f, 1.0f);
+}
+
+// The surface mirrors the filtered sky.
+PENUMBRA_FN bool mirrorsSky(float glossFraction, float exponent)
+{
+    return glossFraction > 0.0f && skyLobeShare(exponent) > 0.0f;
 }
 
 // A receiver's lobe over the nodes: the integrals of V f and of L V f.

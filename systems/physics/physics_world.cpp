@@ -32,8 +32,31 @@ bool finite(vec3 v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// Empty when the description is sound.
-std::string findFault(const BodyDescription& body)
+std::unique_ptr<btRigidBody> makeRigidBody(const BodyDescription& description)
+{
+    const CollisionShape::Data& shape = description.shape.data();
+    const btTransform worldFromMesh(toBullet(description.pose.rotation).normalized(),
+                                    toBullet(description.pose.position));
+    btRigidBody::btRigidBodyConstructionInfo info(description.mass, nullptr, shape.shape(),
+                                                  description.mass * shape.inertiaPerMass);
+    info.m_startWorldTransform = worldFromMesh * shape.meshFromBody;
+    info.m_friction = description.friction;
+    info.m_rollingFriction = description.rollingFriction;
+    info.m_spinningFriction = description.rollingFriction;
+    info.m_restitution = description.restitution;
+    info.m_linearDamping = description.linearDamping;
+    info.m_angularDamping = description.angularDamping;
+    info.m_linearSleepingThreshold = kSleepVelocity;
+    info.m_angularSleepingThreshold = kSleepAngularVelocity;
+    auto rigid = std::make_unique<btRigidBody>(info);
+    rigid->setLinearVelocity(toBullet(description.motion.velocity));
+    rigid->setAngularVelocity(toBullet(description.motion.angularVelocity));
+    return rigid;
+}
+
+} // namespace
+
+std::string bodyFault(const BodyDescription& body)
 {
     const auto inRange = [](float value, float high) {
         return value >= 0 && value <= high;
@@ -64,30 +87,6 @@ std::string findFault(const BodyDescription& body)
                            body.angularDamping);
     return {};
 }
-
-std::unique_ptr<btRigidBody> makeRigidBody(const BodyDescription& description)
-{
-    const CollisionShape::Data& shape = description.shape.data();
-    const btTransform worldFromMesh(toBullet(description.pose.rotation).normalized(),
-                                    toBullet(description.pose.position));
-    btRigidBody::btRigidBodyConstructionInfo info(description.mass, nullptr, shape.shape(),
-                                                  description.mass * shape.inertiaPerMass);
-    info.m_startWorldTransform = worldFromMesh * shape.meshFromBody;
-    info.m_friction = description.friction;
-    info.m_rollingFriction = description.rollingFriction;
-    info.m_spinningFriction = description.rollingFriction;
-    info.m_restitution = description.restitution;
-    info.m_linearDamping = description.linearDamping;
-    info.m_angularDamping = description.angularDamping;
-    info.m_linearSleepingThreshold = kSleepVelocity;
-    info.m_angularSleepingThreshold = kSleepAngularVelocity;
-    auto rigid = std::make_unique<btRigidBody>(info);
-    rigid->setLinearVelocity(toBullet(description.motion.velocity));
-    rigid->setAngularVelocity(toBullet(description.motion.angularVelocity));
-    return rigid;
-}
-
-} // namespace
 
 struct PhysicsWorld::State {
     btDefaultCollisionConfiguration configuration;
@@ -137,7 +136,7 @@ Result<PhysicsWorld> PhysicsWorld::build(std::vector<BodyDescription> bodies,
     std::sort(bodies.begin(), bodies.end(),
               [](const auto& a, const auto& b) { return a.id < b.id; });
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        std::string fault = findFault(bodies[i]);
+        std::string fault = bodyFault(bodies[i]);
         if (i > 0 && bodies[i - 1].id == bodies[i].id)
             fault = "another body has the same id";
         if (!fault.empty())

@@ -13,6 +13,7 @@
 #include "systems/physics/collision_shape.h"
 
 #include <cstdint>
+#include <string>
 
 namespace penumbra {
 
@@ -38,6 +39,9 @@ struct BodyDescription {
     float linearDamping = 0.02f;   // [0, 1], share of velocity lost per second
     float angularDamping = 0.1f;
 };
+
+// Why PhysicsWorld::build would refuse the body; empty: it is sound.
+std::string bodyFault(const BodyDescription& body);
 
 struct PhysicsSettings {
     vec3 gravity = vec3(0, -9.81f, 0); // m/s²

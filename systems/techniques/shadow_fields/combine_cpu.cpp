@@ -287,7 +287,7 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             const ShNodal transfer = transferNodal(visibility, receiver);
             for (int n = 0; n < 32; ++n)
                 sum += transfer.v[n] * vec3(frame.lightNodes[n]);
-            if (sky != nullptr && receiver.glossFraction > 0)
+            if (sky != nullptr && mirrorsSky(receiver.glossFraction, receiver.glossExponent))
                 sum += sharpReflection(receiver, visibility, frame, *sky);
         }
         radiance[cluster.firstRadiance + v] =

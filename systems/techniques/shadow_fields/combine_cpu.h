@@ -34,7 +34,7 @@ std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstan
                                          const FrameConstants& frame);
 
 // As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance`
-// [scene.radianceCount]. `sky`: as GpuScene::setSkyLobes; null: none.
+// [scene.radianceCount]. `sky`: not empty; null: none, as for GpuScene::setSkyLobes.
 void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& instances,
                     const FrameConstants& frame, const ClusterEntities& cluster,
                     std::span<vec4> radiance, const SkyLobes* sky = nullptr);

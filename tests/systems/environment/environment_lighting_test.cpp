@@ -223,5 +223,26 @@ TEST(EnvironmentLighting, TheStrongestTwoAreDrawnAndAllGiveLight)
     EXPECT_EQ(lighting.background()[1].rotation, kTurns[0]);
 }
 
+TEST(EnvironmentLighting, LobesFollowTheLights)
+{
+    AssetStore store;
+    const AssetHandle day = store.addEnvironment(makeSky(64, 32, lopsided));
+    const AssetHandle dusk = store.addEnvironment(makeSky(64, 32, evening));
+    const vec3 up = normalize(vec3(1, 2, 0.5f)), down(0, -1, 0);
+    for (const bool ground : {false, true}) {
+        EnvironmentLighting lighting(store, ground);
+        const auto at = [&](std::vector<EnvironmentLight> lights, vec3 direction) {
+            lighting.set(lights);
+            return filteredSky(lighting.lobes(), direction, 256);
+        };
+        const vec3 first = at({{day, 1}}, up), second = at({{dusk, 1}}, up);
+        EXPECT_GT(length(first - second), 1);
+        EXPECT_LT(length(at({{day, 0.5f}, {dusk, 2}}, up) - (0.5f * first + 2.0f * second)), 1e-4);
+        EXPECT_EQ(at({{day, 1}}, up), first); // known by now
+        EXPECT_EQ(at({{day, 0}}, up), vec3(0));
+        EXPECT_EQ(at({{day, 1}}, down) == vec3(0), ground);
+    }
+}
+
 } // namespace
 } // namespace penumbra

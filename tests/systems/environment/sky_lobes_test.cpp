@@ -74,7 +74,6 @@ TEST(SkyLobes, OfAnEvenSkyAreEven)
     const SkyLobes lobes = filterSky(makeEnvironment(32, 16, std::vector<vec3>(512, vec3(2))));
     for (const vec4& texel : lobes.texels)
         EXPECT_NEAR(texel.x, 2, 1e-5);
-    EXPECT_EQ(filteredSky({}, vec3(0, 1, 0), 16), vec3(0));
 }
 
 TEST(SkyLobes, OddMapsAreFiltered)
@@ -83,7 +82,8 @@ TEST(SkyLobes, OddMapsAreFiltered)
          std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 1}, {6, 3}, {7, 2}, {4, 256}}) {
         const SkyLobes lobes = filterSky(makeEnvironment(
             width, height, std::vector<vec3>(std::size_t{width} * height, vec3(1))));
-        EXPECT_NEAR(lobes.texels.front().x, 1, 1e-5) << width << " x " << height;
+        for (const vec4& texel : lobes.texels)
+            ASSERT_NEAR(texel.x, 1, 1e-4) << width << " x " << height;
     }
 }
 
@@ -94,11 +94,13 @@ TEST(SkyLobes, TurnAndAddUp)
     SkyLobes sum;
     addTurned(sum, lobes, 2, vec4(0, 0, 0, 1));
     addTurned(sum, lobes, 0.5f, turn);
-    for (const vec3& d : {vec3(0, 1, 0), vec3(0.6f, 0, 0.8f), vec3(-1, 0, 0)}) {
-        const vec3 expected = 2.0f * filteredSky(lobes, d, 8) +
-                              0.5f * filteredSky(lobes, rotate(vec4(-vec3(turn), turn.w), d), 8);
-        EXPECT_LT(length(filteredSky(sum, d, 8) - expected), 0.01f * length(expected));
-    }
+    for (const float exponent : {4.0f, 40.0f, 1024.0f})
+        for (const vec3& d : {vec3(0, 1, 0), vec3(0.6f, 0, 0.8f), vec3(-1, 0, 0)}) {
+            const vec3 turned = rotate(vec4(-vec3(turn), turn.w), d);
+            const vec3 expected = 2.0f * filteredSky(lobes, d, exponent) +
+                                  0.5f * filteredSky(lobes, turned, exponent);
+            EXPECT_LT(length(filteredSky(sum, d, exponent) - expected), 0.01f * length(expected));
+        }
 }
 
 } // namespace

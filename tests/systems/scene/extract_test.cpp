@@ -72,6 +72,20 @@ TEST_F(Extract, NamesTheEntityWhoseAssetHasNoSuchField)
     }
 }
 
+TEST_F(Extract, ScalesAreBoundedInTheWorld)
+{
+    ecs::Entity parent = m_world.create(Transform{.scale = 1e-4f});
+    for (int i = 0; i < 2; ++i) {
+        const ecs::Entity child = m_world.create(ecs::Name(i == 0 ? "small" : "culprit"),
+                                                 Transform{.scale = 1e-2f}, MeshInstance{m_block});
+        ASSERT_TRUE(m_world.setParent(child, parent));
+        parent = child;
+    }
+    const Result<SceneData> data = extractScene(m_world, m_assets);
+    ASSERT_FALSE(data);
+    EXPECT_NE(data.error().message.find("culprit"), std::string::npos) << data.error().message;
+}
+
 TEST_F(Extract, GathersOnlyWhatChanged)
 {
     const ecs::Entity block = m_world.create(Transform{}, MeshInstance{m_block}, Material{},

@@ -76,7 +76,8 @@ TEST_F(Bodies, ThatCannotMoveAreNamed)
     };
     for (const std::string& message :
          {error(), error(Transform{}), error(Transform{}, MeshInstance{}),
-          error(Transform{}, MeshInstance{sheet})})
+          error(Transform{}, MeshInstance{sheet}),
+          error(Transform{.scale = 1000}, MeshInstance{m_ball})}) // beyond 1e6 kg
         EXPECT_NE(message.find("culprit"), std::string::npos) << message;
     EXPECT_EQ(error(Transform{}, MeshInstance{m_ball}), "");
 

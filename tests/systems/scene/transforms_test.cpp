@@ -79,6 +79,14 @@ TEST_F(Arm, HangsTogetherInTheWorld)
     EXPECT_FLOAT_EQ(hand.scale, 0.25f);
 }
 
+TEST_F(Arm, DisabledParentsStillCarry)
+{
+    m_world.setEnabled(m_joint, false);
+    m_world.get<Transform>(m_shoulder).position = {0, 3, 0};
+    run();
+    expectNear(at(m_hand).position, {-0.5f, 3.5f, -2});
+}
+
 TEST_F(Arm, WhatHangsOnAMovedEntityMovesAndNothingElse)
 {
     run();
