@@ -54,6 +54,8 @@ Result<void> Renderer::apply(const SceneChanges& changes)
             });
         if (mirrors && (changes.relit || !m_mirrors))
             m_scene.setSkyLobes(m_lighting.lobes());
+        if (!mirrors && m_mirrors)
+            m_scene.setSkyLobes({});
         m_mirrors = mirrors;
     }
     return done;
@@ -129,8 +131,9 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     };
     time("entity_sort",
          [&](const GpuFrame& gpu) { recordEntitySort(gpu, m_passes, receivers(gpu)); });
-    time("combine",
-         [&](const GpuFrame& gpu) { recordCombine(gpu, m_passes, receivers(gpu), kernel); });
+    time("combine", [&](const GpuFrame& gpu) {
+        recordCombine(gpu, m_passes, receivers(gpu), kernel, m_scene.mirrors());
+    });
     if (m_pixels)
         time("pixel_resolve", [&](const GpuFrame& gpu) { recordPixelResolve(gpu, *m_pixels); });
     time("raster", [&](const GpuFrame& gpu) {

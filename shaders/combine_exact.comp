@@ -23,6 +23,7 @@ layout(constant_id = 0) const uint kReceivers = 4; // per invocation: amortises 
 layout(local_size_x_id = 1) in;                    // kClusterReceivers / kReceivers
 layout(constant_id = 2) const float kSelfScale = 1.0;
 layout(constant_id = 3) const bool kLocalLights = true;
+layout(constant_id = 4) const bool kMirrors = false; // some surface mirrors the filtered sky
 
 FieldTetrahedron tetrahedronAt(FieldEntity entity, vec3 position, out FieldCell cell)
 {
@@ -116,7 +117,7 @@ vec3 sharpReflection(uint v)
 {
     const ZonalPolynomial phong = phongPolynomial(receiver[v].glossExponent);
     GlossSums sums = GlossSums(0.0, vec3(0.0));
-    for (int n = 0; n < 32; ++n) {
+    [[unroll]] for (int n = 0; n < 32; ++n) { // as a loop, it would keep the nodes in memory
         const float gloss = visibility[v].v[n] * glossAt(receiver[v], phong, kShNodes[n].xyz);
         sums.visible += gloss * kShNodes[n].w;
         sums.reflected += gloss * frame.lightNodes[n].rgb;
@@ -157,7 +158,7 @@ void main()
     for (; next < occluders; ++next)
         occlude(listed(kListOccluders + next));
 
-    const bool sharp = frame.skyLobes != 0u && mirrorsSky(self.material.w, self.material1.x);
+    const bool sharp = kMirrors && mirrorsSky(self.material.w, self.material1.x);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const ShNodal transfer = transferNodal(visibility[v], receiver[v]);
         for (int n = 0; n < 32; ++n)

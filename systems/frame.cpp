@@ -71,7 +71,7 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
     const ReceiverClusters receivers = receiverClusters(gpu, scene, options.pixels);
     recordEntitySort(gpu, passes, receivers);
     if (options.combine)
-        recordCombine(gpu, passes, receivers, options.kernel);
+        recordCombine(gpu, passes, receivers, options.kernel, scene.mirrors());
     if (options.combine && options.pixels)
         recordPixelResolve(gpu, *options.pixels);
     computeToGraphics(gpu.cmd);
@@ -122,10 +122,10 @@ void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes,
 }
 
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
-                   const ReceiverClusters& receivers, Kernel kernel)
+                   const ReceiverClusters& receivers, Kernel kernel, bool mirrors)
 {
     const GpuZone zone(gpu.cmd, "combine");
-    bind(gpu.cmd, passes.combine(kernel), receivers.set, nullptr, 0);
+    bind(gpu.cmd, passes.combine(kernel, mirrors), receivers.set, nullptr, 0);
     vkCmdDispatchIndirect(gpu.cmd, receivers.cull, offsetof(CullResult, combineGroups));
 }
 
@@ -196,10 +196,13 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
     compute(passes.combineLiteral, {.shader = "combine_literal.comp",
                                     .bindings = scene,
                                     .constants = {0, 0, selfScale, lights}});
-    compute(passes.combineExact,
-            {.shader = "combine_exact.comp",
-             .bindings = scene,
-             .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale, lights}});
+    // On lavapipe a branch costs what is behind it, whether taken or not: 3 times the whole kernel.
+    for (const std::uint32_t mirrors : {0u, 1u})
+        compute(mirrors == 0 ? passes.combineExact : passes.combineMirrors,
+                {.shader = "combine_exact.comp",
+                 .bindings = scene,
+                 .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale, lights,
+                               mirrors}});
     compute(passes.post, {.shader = "post.comp",
                           .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                                        {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},

@@ -19,12 +19,13 @@ struct RasterPasses {
 
 // Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
 struct FramePasses {
-    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, combineExact, background,
-        post;
-    RasterPasses raster, rasterPixels; // radiance of vertices, of pixels
-    [[nodiscard]] const Pipeline& combine(Kernel kernel) const
+    Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, background, post;
+    Pipeline combineExact, combineMirrors; // the second with what mirrors the filtered sky
+    RasterPasses raster, rasterPixels;     // radiance of vertices, of pixels
+    // `mirrors`: GpuScene::mirrors().
+    [[nodiscard]] const Pipeline& combine(Kernel kernel, bool mirrors) const
     {
-        return kernel == Kernel::Literal ? combineLiteral : combineExact;
+        return kernel == Kernel::Literal ? combineLiteral : mirrors ? combineMirrors : combineExact;
     }
 };
 // `localLights`: kernels for scenes with lights of their own; without, they are smaller and faster.
@@ -70,7 +71,7 @@ void recordClusterCull(const GpuFrame& gpu, const FramePasses& passes, const Gpu
 void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes,
                       const ReceiverClusters& receivers);
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
-                   const ReceiverClusters& receivers, Kernel kernel);
+                   const ReceiverClusters& receivers, Kernel kernel, bool mirrors);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
                   const FrameTargets& targets, bool surfaces = true,
                   const PixelReceivers* pixels = nullptr);

@@ -296,9 +296,8 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.clusterCount = static_cast<std::uint32_t>(m_data.clusters.size());
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
-    frame.skyLobes = m_skyLobes.texels.empty() ? 0 : 1;
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
-    if (slot.skyLobesAt != m_skyLobesAt && frame.skyLobes == 1)
+    if (slot.skyLobesAt != m_skyLobesAt && mirrors())
         std::memcpy(slot.skyLobes.mapped, m_skyLobes.texels.data(),
                     m_skyLobes.texels.size() * sizeof(vec4));
     slot.skyLobesAt = m_skyLobesAt;

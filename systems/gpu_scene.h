@@ -62,6 +62,7 @@ public:
     // What sharp surfaces mirror from the next frame on: the filtered light of all environments.
     // Nothing, as at first: surfaces mirror what the SH of the light hold.
     void setSkyLobes(const SkyLobes& lobes);
+    [[nodiscard]] bool mirrors() const { return !m_skyLobes.texels.empty(); }
 
     // Writes what the frame of `slot` reads, which no frame in flight uses: constants, changed
     // rows, the maps of the background.

@@ -35,7 +35,7 @@ Result<double> FieldCombiner::run(const FrameConstants& constants, Kernel kernel
         recordClusterCull(gpu, m_passes, m_scene);
         const ReceiverClusters receivers = receiverClusters(gpu, m_scene, nullptr);
         recordEntitySort(gpu, m_passes, receivers);
-        recordCombine(gpu, m_passes, receivers, kernel);
+        recordCombine(gpu, m_passes, receivers, kernel, m_scene.mirrors());
     });
     if (!done)
         return done.error();

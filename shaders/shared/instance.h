@@ -120,8 +120,6 @@ struct FrameConstants {
     float backgroundIntensity; // factor of both maps
     uint culls;                // kCull… bits
     float skyIntensity[kSkyMaps];
-    uint skyLobes; // 1: the filtered sky is there (shaders/shared/gloss.h)
-    uint reserved[3];
 };
 
 // A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
@@ -290,7 +288,7 @@ static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 1088 &&
+static_assert(sizeof(penumbra::FrameConstants) == 1072 &&
               offsetof(penumbra::FrameConstants, clusterCount) == 1040);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif
