@@ -38,11 +38,7 @@ Result<void> runOn(const Device& device, const DemoOptions& options)
     if (!options.sweep.empty())
         return runSweepLights(device, {.assets = options.assets},
                               options.out.empty() ? "out" : options.out);
-    Result<std::unique_ptr<DemoScene>> scene =
-        loadScene(options.scene, {options.assets, options.seed, options.environment});
-    if (scene)
-        for (const std::string& warning : (*scene)->warnings)
-            fmt::print(stderr, "penumbra-demo: {}\n", warning);
+    Result<std::unique_ptr<DemoScene>> scene = openScene(options);
     return scene ? runHeadless(device, **scene, options) : scene.error();
 }
 

@@ -1,5 +1,7 @@
 #include "demo/orbit.h"
 
+#include "systems/rotation.h"
+
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
@@ -18,7 +20,7 @@ Transform orbitAt(const Orbit& orbit, const Transform& now, double time)
     // +z, turned by an angle about y, is (sin, 0, cos): inwards is a quarter turn behind `angle`.
     const float yaw = orbit.aim > 0 ? angle - glm::half_pi<float>() : turned(0, orbit.spin);
     const quat q = glm::angleAxis(yaw, vec3(0, 1, 0));
-    at.rotation = vec4(q.x, q.y, q.z, q.w);
+    at.rotation = toVec4(q);
     return at;
 }
 

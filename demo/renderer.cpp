@@ -52,11 +52,10 @@ Result<void> Renderer::apply(const SceneChanges& changes)
             std::any_of(instances.begin(), instances.end(), [](const SceneInstance& instance) {
                 return mirrorsSky(instance.material.glossFraction, instance.material.glossExponent);
             });
-        if (mirrors && (changes.relit || !m_mirrors))
+        if (mirrors && (changes.relit || !m_scene.mirrors()))
             m_scene.setSkyLobes(m_lighting.lobes());
-        if (!mirrors && m_mirrors)
+        else if (!mirrors && m_scene.mirrors())
             m_scene.setSkyLobes({});
-        m_mirrors = mirrors;
     }
     return done;
 }

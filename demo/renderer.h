@@ -87,7 +87,6 @@ private:
     float m_exposure;
     Kernel m_kernel = Kernel::Exact;
     bool m_surfaces = true;
-    bool m_mirrors = false;   // some surface is sharp enough to mirror the sky
     std::uint32_t m_slot = 0; // of the frame last drawn
 };
 

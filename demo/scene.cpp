@@ -66,6 +66,16 @@ Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const Scen
     return scene;
 }
 
+Result<std::unique_ptr<DemoScene>> openScene(const DemoOptions& options)
+{
+    Result<std::unique_ptr<DemoScene>> scene =
+        loadScene(options.scene, {options.assets, options.seed, options.environment});
+    if (scene)
+        for (const std::string& warning : (*scene)->warnings)
+            fmt::print(stderr, "penumbra-demo: {}\n", warning);
+    return scene;
+}
+
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
                                                   const std::string& environment, float intensity)
 {
@@ -96,15 +106,21 @@ std::vector<std::string> environmentNames(const std::filesystem::path& assets)
     return names;
 }
 
-Result<ecs::Entity> addEnvironment(DemoScene& scene, const std::filesystem::path& assets,
-                                   const std::string& name, float intensity)
+Result<AssetHandle> loadEnvironment(DemoScene& scene, const std::filesystem::path& assets,
+                                    const std::string& name)
 {
     const std::filesystem::path path = assets / (name + ".env");
     std::error_code ec;
     if (!std::filesystem::exists(path, ec))
         return Error{fmt::format("no environment is called '{}'; {} has: {}", name, assets.string(),
                                  fmt::join(environmentNames(assets), ", "))};
-    const Result<AssetHandle> map = scene.assets.loadEnvironment(path);
+    return scene.assets.loadEnvironment(path);
+}
+
+Result<ecs::Entity> addEnvironment(DemoScene& scene, const std::filesystem::path& assets,
+                                   const std::string& name, float intensity)
+{
+    const Result<AssetHandle> map = loadEnvironment(scene, assets, name);
     if (!map)
         return map.error();
     return scene.world.create(ecs::Name(name),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "assets/asset_store.h"
+#include "demo/options.h"
 #include "runtime/ecs/scene_file.h"
 #include "runtime/ecs/world.h"
 #include "systems/components.h"
@@ -46,14 +47,21 @@ std::span<const SceneEntry> sceneEntries();
 // asset that is missing or damaged.
 Result<std::unique_ptr<DemoScene>> loadScene(const std::string& name, const SceneOptions& options);
 
+// loadScene, with the scene's warnings on stderr.
+Result<std::unique_ptr<DemoScene>> openScene(const DemoOptions& options);
+
 // A scene on the floor, which lies in the light: the sky that the options ask for, else
 // `environment`, and `floor`. Error: one of them is missing or damaged.
 Result<std::unique_ptr<DemoScene>> makeFloorScene(const SceneOptions& options, std::string name,
                                                   const std::string& environment,
                                                   float intensity = 1);
 
-// An entity with an EnvironmentLight, named as its map: `name` of the folder `assets`, without
-// .env. Error: no such map, the message lists all; or a damaged one.
+// The map `name` of the folder `assets`, without .env. Error: no such map, the message lists all;
+// or a damaged one.
+Result<AssetHandle> loadEnvironment(DemoScene& scene, const std::filesystem::path& assets,
+                                    const std::string& name);
+
+// An entity with an EnvironmentLight of that map, and its name.
 Result<ecs::Entity> addEnvironment(DemoScene& scene, const std::filesystem::path& assets,
                                    const std::string& name, float intensity = 1);
 

@@ -76,17 +76,16 @@ Result<void> chooseSky(DemoScene& scene, const SceneOptions& options)
     if (options.environment.empty() && !dark)
         return {};
     const std::string name = options.environment.empty() ? kDefaultSky : options.environment;
-    const Result<ecs::Entity> sky = addEnvironment(scene, options.assets, name);
-    if (!sky)
-        return sky.error();
+    const Result<AssetHandle> map = loadEnvironment(scene, options.assets, name);
+    if (!map)
+        return map.error();
     if (options.environment.empty())
         scene.warnings.push_back(fmt::format(
             "nothing in it shines: lit by '{}'; choose another sky with --environment", name));
     if (skies.empty())
-        return {};
-    auto& light = scene.world.get<EnvironmentLight>(skies.front());
-    light.asset = scene.world.get<const EnvironmentLight>(*sky).asset;
-    scene.world.destroy(*sky);
+        scene.world.create(ecs::Name(name), EnvironmentLight{.asset = *map});
+    else
+        scene.world.get<EnvironmentLight>(skies.front()).asset = *map;
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include "demo/sky_motion.h"
 #include "runtime/ecs/name.h"
+#include "systems/rotation.h"
 
 #include <algorithm>
 #include <glm/gtc/quaternion.hpp>
@@ -27,9 +28,8 @@ void turnSky(ecs::World& world, float radians)
     const quat turn = glm::angleAxis(radians, vec3(0, 1, 0));
     for (const ecs::Entity entity : takeSkies(world)) {
         vec4& rotation = world.get<EnvironmentLight>(entity).rotation;
-        const quat q =
-            normalize(turn * quat(rotation.w, rotation.x, rotation.y, rotation.z)); // steps add up
-        rotation = vec4(q.x, q.y, q.z, q.w);
+        const quat q = normalize(turn * toQuat(rotation)); // steps add up
+        rotation = toVec4(q);
     }
 }
 

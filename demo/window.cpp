@@ -93,13 +93,10 @@ struct Show {
 Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent2D extent)
 {
     Show show;
-    Result<std::unique_ptr<DemoScene>> scene =
-        loadScene(options.scene, {options.assets, options.seed, options.environment});
+    Result<std::unique_ptr<DemoScene>> scene = openScene(options);
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
-    for (const std::string& warning : show.scene->warnings)
-        fmt::print(stderr, "penumbra-demo: {}\n", warning);
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(device, *show.scene, extent);
     if (!renderer)
         return renderer.error();

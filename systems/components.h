@@ -100,7 +100,7 @@ inline constexpr auto ecs::kFields<EnvironmentLight> =
 
 // What a body collides as, made from its mesh: its convex hull, or convex pieces that follow its
 // hollows.
-enum class BodyShape : std::uint8_t { hull, pieces };
+enum class BodyShape : std::uint8_t { Hull, Pieces };
 inline constexpr std::string_view kBodyShapeNames[] = {"hull", "pieces"};
 
 // The entity's mesh moves as a rigid body, scaled as the entity is at the start; not below a
@@ -108,7 +108,7 @@ inline constexpr std::string_view kBodyShapeNames[] = {"hull", "pieces"};
 struct RigidBody {
     static constexpr std::string_view kName = "RigidBody";
     float density = 300; // kg/m³ of the shape; 0: it does not move
-    BodyShape shape = BodyShape::hull;
+    BodyShape shape = BodyShape::Hull;
     float friction = 0.6f; // these three as in BodyDescription (systems/physics/physics_world.h)
     float rollingFriction = 0.02f;
     float restitution = 0.1f;

@@ -47,7 +47,7 @@ const SkyLobes& EnvironmentLighting::lobes()
     m_lobes.texels.resize(kSkyLobeTexels);
     for (const EnvironmentLight& light : m_lights) {
         Lit& known = lit(light);
-        if (known.lobes.texels.empty())
+        if (known.lobes.texels.empty()) // cuts the map again: few scenes ask, and maps are large
             known.lobes = filterSky(litEnvironment(m_assets, light, m_ground));
         addTurned(m_lobes, known.lobes, light.intensity, light.rotation);
     }

@@ -1,5 +1,7 @@
 #include "systems/physics_system.h"
 
+#include "systems/rotation.h"
+
 #include <fmt/format.h>
 #include <map>
 #include <tuple>
@@ -23,7 +25,7 @@ public:
         for (const vec3& p : mesh.positions)
             points.push_back(p * scale);
         Result<CollisionShape> shape =
-            kind == BodyShape::pieces
+            kind == BodyShape::Pieces
                 ? meshShape(points, mesh.indices, {.maxPieces = 14, .resolution = 32})
                 : hullShape(points);
         if (shape)
@@ -51,8 +53,7 @@ Result<BodyDescription> describeBody(const ecs::World& world, ecs::Entity entity
         return shape.error();
     BodyDescription described{.shape = *shape,
                               .mass = body.density * shape->volume(),
-                              .pose = {at->position, quat(at->rotation.w, at->rotation.x,
-                                                          at->rotation.y, at->rotation.z)},
+                              .pose = {at->position, toQuat(at->rotation)},
                               .motion = {body.velocity, body.angularVelocity},
                               .friction = body.friction,
                               .rollingFriction = body.rollingFriction,
@@ -98,8 +99,7 @@ void stepPhysics(const ecs::SystemContext& context, PhysicsWorld& physics, float
             const Pose pose = physics.interpolated(body.id);
             Transform moved = old;
             moved.position = pose.position;
-            moved.rotation =
-                vec4(pose.rotation.x, pose.rotation.y, pose.rotation.z, pose.rotation.w);
+            moved.rotation = toVec4(pose.rotation);
             if (moved.position != old.position || moved.rotation != old.rotation)
                 context.set(entity, moved);
         });

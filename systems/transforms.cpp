@@ -1,6 +1,7 @@
 #include "systems/transforms.h"
 
 #include "shaders/shared/instance.h"
+#include "systems/rotation.h"
 
 namespace penumbra {
 
@@ -24,12 +25,11 @@ void follow(const Query& placed, const ecs::Hierarchy& hierarchy, const Moved& m
 
 Transform transformed(const Transform& parent, const Transform& child)
 {
-    const auto quaternion = [](vec4 q) { return quat(q.w, q.x, q.y, q.z); };
     const quat rotation =
-        glm::normalize(quaternion(parent.rotation) * quaternion(child.rotation)); // no drift
+        glm::normalize(toQuat(parent.rotation) * toQuat(child.rotation)); // no drift
     return {.position = parent.position + rotate(parent.rotation, parent.scale * child.position),
             .scale = parent.scale * child.scale,
-            .rotation = vec4(rotation.x, rotation.y, rotation.z, rotation.w)};
+            .rotation = toVec4(rotation)};
 }
 
 void addWorldTransforms(ecs::World& world)

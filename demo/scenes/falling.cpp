@@ -1,6 +1,7 @@
 #include "demo/scenes/falling.h"
 
 #include "demo/scenes/objects.h"
+#include "systems/rotation.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -17,10 +18,10 @@ struct Kind {
 
 // 20 objects. The bunny alone has 35 thousand vertices, so there is one of it.
 constexpr Kind kKinds[] = {
-    {"bunny", 0.62f, BodyShape::hull, 1},    {"knight", 0.50f, BodyShape::pieces, 3},
-    {"teapot", 0.52f, BodyShape::pieces, 3}, {"torus_knot", 0.50f, BodyShape::pieces, 3},
-    {"gear", 0.46f, BodyShape::hull, 3},     {"chess_pawn", 0.44f, BodyShape::pieces, 2},
-    {"mug", 0.36f, BodyShape::pieces, 3},    {"rounded_cube", 0.32f, BodyShape::hull, 2},
+    {"bunny", 0.62f, BodyShape::Hull, 1},    {"knight", 0.50f, BodyShape::Pieces, 3},
+    {"teapot", 0.52f, BodyShape::Pieces, 3}, {"torus_knot", 0.50f, BodyShape::Pieces, 3},
+    {"gear", 0.46f, BodyShape::Hull, 3},     {"chess_pawn", 0.44f, BodyShape::Pieces, 2},
+    {"mug", 0.36f, BodyShape::Pieces, 3},    {"rounded_cube", 0.32f, BodyShape::Hull, 2},
 };
 
 struct Look {
@@ -111,7 +112,7 @@ Result<std::unique_ptr<DemoScene>> loadFallingScene(const SceneOptions& options)
             const Look& look = kLooks[static_cast<std::size_t>(slot) % std::size(kLooks)];
             scene->world.create(Transform{position,
                                           scaleTo(scene->assets.mesh(assets[k]), kKinds[k].size),
-                                          vec4(rotation.x, rotation.y, rotation.z, rotation.w)},
+                                          toVec4(rotation)},
                                 MeshInstance{assets[k]}, ShadowFieldOccluder{assets[k]},
                                 RigidBody{.shape = kKinds[k].shape, .angularVelocity = spin},
                                 Material{look.albedo, look.glossFraction, look.glossExponent});

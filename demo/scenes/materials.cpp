@@ -2,6 +2,8 @@
 
 #include "demo/gloss_cycle.h"
 #include "demo/orbit.h"
+#include "demo/scenes/objects.h"
+#include "systems/rotation.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -12,11 +14,6 @@ namespace {
 constexpr int kColumns = 6; // exponents 2, 4, … 64
 constexpr float kPitch = 0.46f;
 constexpr vec3 kCopper(0.72f, 0.42f, 0.26f), kJade(0.22f, 0.46f, 0.36f);
-
-Result<AssetHandle> load(DemoScene& scene, const SceneOptions& options, const std::string& name)
-{
-    return scene.assets.loadMesh(options.assets / (name + ".glb"));
-}
 
 // In the front row each ball keeps its exponent; in the row behind it each goes through all of
 // them, one after the other.
@@ -48,9 +45,9 @@ Result<std::unique_ptr<DemoScene>> loadMaterialsScene(const SceneOptions& option
                      .pitch = 0.42f,
                      .fieldOfView = 0.62f,
                      .exposure = 1.2f};
-    Result<AssetHandle> ball = load(*scene, options, "ball");
-    Result<AssetHandle> beachBall = load(*scene, options, "beach_ball");
-    Result<AssetHandle> knot = load(*scene, options, "painted_knot");
+    Result<AssetHandle> ball = loadMesh(*scene, options, "ball");
+    Result<AssetHandle> beachBall = loadMesh(*scene, options, "beach_ball");
+    Result<AssetHandle> knot = loadMesh(*scene, options, "painted_knot");
     for (const Result<AssetHandle>* asset : {&ball, &beachBall, &knot})
         if (!*asset)
             return asset->error();
@@ -59,8 +56,7 @@ Result<std::unique_ptr<DemoScene>> loadMaterialsScene(const SceneOptions& option
     // colours, but adds a gloss.
     const quat tilt = glm::angleAxis(0.5f, normalize(vec3(1, 0, 0.6f)));
     constexpr float kScale = 1.6f;
-    scene->world.create(Transform{vec3(-0.62f, kScale * 0.18f, -0.5f), kScale,
-                                  vec4(tilt.x, tilt.y, tilt.z, tilt.w)},
+    scene->world.create(Transform{vec3(-0.62f, kScale * 0.18f, -0.5f), kScale, toVec4(tilt)},
                         MeshInstance{*beachBall}, ShadowFieldOccluder{*beachBall});
     scene->world.create(Transform{.scale = 1.3f}, MeshInstance{*knot}, ShadowFieldOccluder{*knot},
                         Material{vec3(1), 0.5f, 6},

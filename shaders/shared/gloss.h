@@ -14,7 +14,8 @@
 PENUMBRA_BEGIN
 
 // The filtered sky: octahedral maps [side][side] with nodes on the edges, world axes, one after the
-// other; level k for the exponent 4 2^k. Sharp lobes take finer maps.
+// other; level k for the exponent 4 2^k. Sides: what a lobe leaves of a sun's edge is to span a few
+// cells (docs/decisions/0013).
 PENUMBRA_CONST uint kSkyLobeLevels = 9u;
 PENUMBRA_CONST uint kSkyLobeTexels = 124937u;
 
@@ -55,10 +56,11 @@ PENUMBRA_FN float skyLobeLevel(float exponent)
     return clamp(log2(max(exponent, 1.0f)) - 2.0f, 0.0f, float(kSkyLobeLevels - 1u));
 }
 
-// Where lobe times cosine is largest, but for terms of 1 / e^2: towards the normal from the mirror
-// direction.
+// Where (r.w)^e n.w is largest, but for terms of 1 / e^2: the gradient of its logarithm,
+// e r / (r.w) + n / (n.w), is along w there, and w is near r on the right.
 PENUMBRA_FN vec3 skyLobeDirection(Receiver receiver)
 {
+    // Where r grazes, w is not near it: 6 degrees from there on the turn grows no more.
     const float cosine = max(dot(receiver.mirror, receiver.normal), 0.1f);
     return normalize(receiver.glossExponent * receiver.mirror + receiver.normal * (1.0f / cosine));
 }
@@ -67,7 +69,7 @@ PENUMBRA_FN vec3 skyLobeDirection(Receiver receiver)
 // only in the mirror direction of the normal; all from 8 on.
 PENUMBRA_FN float skyLobeShare(float exponent)
 {
-    return clamp(log2(max(exponent, 1.0f)) - 2.0f, 0.0f, 1.0f);
+    return min(skyLobeLevel(exponent), 1.0f);
 }
 
 // The surface mirrors the filtered sky.

@@ -118,9 +118,9 @@ PENUMBRA_FN float zonalValue(ZonalPolynomial p, float t)
 }
 
 // T in nodal form from the visibility, all occluders included: factors are multiplied node by node
-// and never truncated, so their order does not matter. The lobes go up to
-// band 4, one more than the fields: with light up to band 5 their product has degree 9, which the
-// rule still integrates exactly, and the unshadowed radiance is right up to band 4 instead of 3.
+// and never truncated, so their order does not matter. The lobes go up to band 4, one more than the
+// fields: with light up to band 5 their product has degree 9, which the rule still integrates
+// exactly, and the unshadowed radiance is right up to band 4 instead of 3.
 PENUMBRA_FN ShNodal transferNodal(ShNodal visibility, Receiver receiver)
 {
     ShNodal t = visibility;

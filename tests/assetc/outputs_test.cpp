@@ -69,13 +69,21 @@ TEST_F(Outputs, AreCheckedBeforeTheSourceIsOpened)
 
 TEST_F(Outputs, AFolderThatCannotBeWrittenIsNamed)
 {
-    if (::geteuid() == 0)
-        GTEST_SKIP() << "root may write anywhere: run as another user";
-    std::filesystem::create_directories(folder / "folder.glb");
     using std::filesystem::perms;
-    std::filesystem::permissions(folder / "folder.glb", perms::owner_read | perms::owner_exec);
-    EXPECT_NE(run("bake none.obj -o " + at("folder.glb/o.glb")).err.find("choose another folder"),
-              std::string::npos);
+    constexpr perms kReadOnly = perms(0555);
+    std::filesystem::permissions(folder / "folder.glb", kReadOnly);
+    std::string program = PENUMBRA_ASSETC;
+    std::string arguments = "bake none.obj -o " + at("folder.glb/o.glb");
+    if (::geteuid() ==
+        0) { // may write anywhere: nobody runs a copy, from a folder that all may read
+        std::filesystem::permissions(folder / "", perms(0755));
+        std::filesystem::copy_file(program, folder / "assetc");
+        arguments = "--reuid=65534 --regid=65534 --clear-groups " + at("assetc") + " " + arguments;
+        program = "setpriv";
+    }
+    const Outcome outcome = runProgram(program, arguments, folder);
+    EXPECT_EQ(outcome.code, 1) << outcome.err;
+    EXPECT_NE(outcome.err.find("choose another folder"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Outputs, AnOldReportIsNotLeftToAFailure)

@@ -35,8 +35,7 @@ bool haveFfmpeg()
 
 TEST_F(VideoWriterTest, WritesAnMp4OfOddSize)
 {
-    if (!haveFfmpeg())
-        GTEST_SKIP() << "the program ffmpeg is missing: install the package ffmpeg";
+    ASSERT_TRUE(haveFfmpeg()) << "the program ffmpeg is missing: scripts/setup installs it";
     Result<VideoWriter> video = openFilm(folder / "film.mp4");
     ASSERT_TRUE(video) << video.error().message;
     for (std::uint8_t i = 0; i < 20; ++i)
@@ -53,8 +52,7 @@ TEST_F(VideoWriterTest, WritesAnMp4OfOddSize)
 
 TEST_F(VideoWriterTest, LeavesNothingWhenAbandoned)
 {
-    if (!haveFfmpeg())
-        GTEST_SKIP() << "the program ffmpeg is missing: install the package ffmpeg";
+    ASSERT_TRUE(haveFfmpeg()) << "the program ffmpeg is missing: scripts/setup installs it";
     {
         Result<VideoWriter> video = openFilm(folder / "film.mp4");
         ASSERT_TRUE(video) << video.error().message;
@@ -65,8 +63,7 @@ TEST_F(VideoWriterTest, LeavesNothingWhenAbandoned)
 
 TEST_F(VideoWriterTest, AnEncoderThatFailsSaysWhy)
 {
-    if (!haveFfmpeg())
-        GTEST_SKIP() << "the program ffmpeg is missing: install the package ffmpeg";
+    ASSERT_TRUE(haveFfmpeg()) << "the program ffmpeg is missing: scripts/setup installs it";
     Result<VideoWriter> video = openFilm(folder / "film.mp4");
     ASSERT_TRUE(video) << video.error().message;
     std::filesystem::remove_all(folder); // ffmpeg cannot open its output

@@ -4,8 +4,7 @@
 #include "assets/environment.h"
 #include "shaders/shared/environment.h"
 #include "systems/components.h"
-
-#include <glm/gtc/quaternion.hpp>
+#include "systems/rotation.h"
 
 namespace penumbra {
 
@@ -38,11 +37,6 @@ inline vec3 lopsided(vec3 d)
 inline vec3 evening(vec3 d)
 {
     return vec3(0.1f, 0.1f, 0.2f) + lobe(d, vec3(-2, 0.4f, -1), 12, vec3(9, 5, 2));
-}
-
-inline vec4 toVec4(const quat& q)
-{
-    return vec4(q.x, q.y, q.z, q.w);
 }
 
 inline vec4 turnAbout(vec3 axis, float radians)

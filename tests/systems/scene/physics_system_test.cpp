@@ -25,7 +25,7 @@ TEST_F(Bodies, FallOntoTheGroundAtTheirSize)
     const ecs::Entity wall =
         m_world.create(Transform{{5, 1, 0}}, MeshInstance{m_ball}, RigidBody{.density = 0});
     const ecs::Entity small = m_world.create(Transform{{0, 2, 0}, 0.25f}, MeshInstance{m_ball},
-                                             RigidBody{.shape = BodyShape::pieces});
+                                             RigidBody{.shape = BodyShape::Pieces});
     m_world.create(Transform{{0, 9, 0}}, MeshInstance{m_ball}); // no body
     Result<std::optional<PhysicsWorld>> physics = build();
     ASSERT_TRUE(physics) << physics.error().message;

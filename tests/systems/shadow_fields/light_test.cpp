@@ -1,5 +1,7 @@
 // Local lights by the CPU twin of the kernels: energy, order and what must not jump.
 #include "shaders/shared/order.h"
+
+#include "systems/rotation.h"
 #include "tests/systems/shadow_fields/test_scene.h"
 
 #include <gtest/gtest.h>
@@ -9,11 +11,6 @@
 
 namespace penumbra {
 namespace {
-
-vec4 quaternion(const quat& q)
-{
-    return vec4(q.x, q.y, q.z, q.w);
-}
 
 SceneData build(const std::vector<MeshAsset>& assets, std::vector<SceneInstance> instances,
                 std::vector<SceneLight> lights)
@@ -48,7 +45,7 @@ TEST(Energy, AUniformSkyGivesTheAlbedoAtAnyRotation)
     for (const float angle : {0.0f, 0.7f, 2.9f}) {
         const SceneData scene =
             build(assets,
-                  {{.rotation = quaternion(glm::angleAxis(angle, normalize(vec3(1, 2, 3)))),
+                  {{.rotation = toVec4(glm::angleAxis(angle, normalize(vec3(1, 2, 3)))),
                     .material = {vec3(0.37f), 0, 0}}},
                   {});
         for (const Kernel kernel : kKernels) {
@@ -72,7 +69,7 @@ TEST(Energy, ABoxOfRectanglesGivesTheAlbedo)
         // Flat lights emit along +z: turn that inwards.
         const vec3 axis = side / 2 == 2 ? vec3(1, 0, 0) : cross(vec3(0, 0, 1), -outwards);
         const quat turn = glm::angleAxis(std::acos(-outwards.z), axis);
-        lights.push_back({.asset = 1, .position = outwards, .rotation = quaternion(turn)});
+        lights.push_back({.asset = 1, .position = outwards, .rotation = toVec4(turn)});
     }
     const SceneData scene = build(assets, {{.material = {vec3(0.5f), 0, 0}}}, lights);
     for (const Kernel kernel : kKernels) {
@@ -115,9 +112,8 @@ TEST(Invariance, RotatingTheWholeSceneChangesNothing)
     TestScene turned = upright;
     const auto rotateAll = [&](auto& entities) {
         for (auto& e : entities) {
-            const quat q(e.rotation.w, e.rotation.x, e.rotation.y, e.rotation.z);
             e.position = matrix * e.position;
-            e.rotation = quaternion(turn * q);
+            e.rotation = toVec4(turn * toQuat(e.rotation));
         }
     };
     rotateAll(turned.data.instances);

@@ -6,6 +6,7 @@
 #include "assetc/light/shape_mesh.h"
 #include "assetc/light/sphere_emitter.h"
 #include "shaders/shared/environment.h"
+#include "systems/rotation.h"
 
 #include <glm/gtc/constants.hpp>
 
@@ -44,8 +45,7 @@ MeshAsset makeLight(const Emitter& emitter, float innerRadius, MeshAsset mesh, v
 
 vec4 quaternion(float angle, vec3 axis)
 {
-    const quat q = glm::angleAxis(angle, normalize(axis));
-    return vec4(q.x, q.y, q.z, q.w);
+    return toVec4(glm::angleAxis(angle, normalize(axis)));
 }
 
 } // namespace
