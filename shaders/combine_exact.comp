@@ -6,11 +6,12 @@
 //                product; T = V times BRDF: shaders/shared/transfer.h), corrected as shaders/shared/emitter.h says
 //   environment: B += sum over nodes of weight * L * T, after the last occluder; what the SH of L lack for sharp
 //                reflections is added as shaders/shared/gloss.h says
+// The nodes lie fixed in the receiver's object, so a scene that is turned as a whole looks the same.
 // Source: Zhou et al. 2005, Fig. 5; the fast way is findings section 1, kernel J.
 // Differs: products at quadrature nodes instead of tripling coefficients, so a chain keeps more than order 4 and is
 // commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster; an occluder
 // comes before a light by a weight, not by a yes or no (shaders/shared/order.h).
-//   reads   visible, clusters, lists, instances, fields, receivers, skyLobes
+//   reads   visible, clusters, lists, instances, fields, receivers, skyNodes, skyLobes
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
@@ -68,6 +69,12 @@ uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kLis
 
 Receiver receiver[kReceivers];
 ShNodal visibility[kReceivers];
+mat3 axes; // object from world, of the receivers, without scale: where the nodes lie
+uint firstSkyNode;
+
+Receiver inObject(uint v) { return turnReceiver(axes, receiver[v]); }
+
+vec3 skyNode(int n) { return texelFetch(skyNodeTexels, int(firstSkyNode) + n).rgb; }
 
 float risen(vec4 sphere, uint v)
 {
@@ -77,7 +84,7 @@ float risen(vec4 sphere, uint v)
 void occlude(uint row)
 {
     const GpuInstance occluder = loadInstance(row);
-    const FieldEntity entity = instanceField(occluder);
+    const FieldEntity entity = instanceFieldIn(axes, occluder);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
         visibility[v] =
             shMultiply(visibility[v], occlusion(entity, receiver[v].position, risen(occluder.sphere, v)));
@@ -91,10 +98,10 @@ vec3 localLight(GpuInstance light, uint possible, uint v)
         const GpuInstance occluder = loadInstance(listed(kListOccluders + uint(findLSB(bits))));
         const float weight =
             orderWeight(occluder.sphere, light.sphere, receiver[v].position) * risen(occluder.sphere, v);
-        through = shMultiply(through, occlusion(instanceField(occluder), receiver[v].position, weight));
+        through = shMultiply(through, occlusion(instanceFieldIn(axes, occluder), receiver[v].position, weight));
     }
     return risen(light.sphere, v) * light.material.rgb *
-           lightThrough(transferNodal(through, receiver[v]), instanceField(light), receiver[v]);
+           lightThrough(transferNodal(through, inObject(v)), instanceFieldIn(axes, light), receiver[v]);
 }
 
 vec4 lobeTexel(uint at) { return texelFetch(skyLobeTexels, int(at)); }
@@ -116,11 +123,12 @@ vec3 filteredSky(vec3 direction, float exponent)
 vec3 sharpReflection(uint v)
 {
     const ZonalPolynomial phong = phongPolynomial(receiver[v].glossExponent);
+    const Receiver turned = inObject(v);
     GlossSums sums = GlossSums(0.0, vec3(0.0));
     [[unroll]] for (int n = 0; n < 32; ++n) { // as a loop, it would keep the nodes in memory
-        const float gloss = visibility[v].v[n] * glossAt(receiver[v], phong, kShNodes[n].xyz);
+        const float gloss = visibility[v].v[n] * glossAt(turned, phong, kShNodes[n].xyz);
         sums.visible += gloss * kShNodes[n].w;
-        sums.reflected += gloss * frame.lightNodes[n].rgb;
+        sums.reflected += gloss * skyNode(n);
     }
     return skyGloss(receiver[v], sums, filteredSky(skyLobeDirection(receiver[v]), receiver[v].glossExponent));
 }
@@ -132,13 +140,13 @@ void main()
     const uint occluders = listed(0u);
 
     const GpuInstance self = loadInstance(cluster.instance);
-    const ShRotation worldFromObject = instanceRotation(self);
+    axes = objectFromWorld(self);
+    firstSkyNode = 32u * cluster.instance;
     vec3 sum[kReceivers];
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
         receiver[v] = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
-        const Sh4 own = selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale);
-        visibility[v] = shNodes(shRotate(own, worldFromObject));
+        visibility[v] = shNodes(selfVisibility(texelFetch(receiverTexels, texel + 1), kSelfScale));
         sum[v] = vec3(0.0);
     }
 
@@ -160,9 +168,9 @@ void main()
 
     const bool sharp = kMirrors && mirrorsSky(self.material.w, self.material1.x);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
-        const ShNodal transfer = transferNodal(visibility[v], receiver[v]);
+        const ShNodal transfer = transferNodal(visibility[v], inObject(v));
         for (int n = 0; n < 32; ++n)
-            sum[v] += transfer.v[n] * frame.lightNodes[n].rgb;
+            sum[v] += transfer.v[n] * skyNode(n);
         if (sharp)
             sum[v] += sharpReflection(v);
         radiance[cluster.firstRadiance + gl_LocalInvocationID.x + v * lanes] =

@@ -1,7 +1,7 @@
 #version 460
 // instance_update: one invocation per changed row, an instance or a light. Transform and field -> the constants that every receiver uses.
 //   reads   changed, inputs [changedCount], fields [fieldCount]
-//   writes  instances [rows] at the changed indices; denseRotations where kernel literal is in use
+//   writes  instances [rows] at the changed indices; denseRotations where kernel literal is in use, else skyNodes
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
 
@@ -18,4 +18,13 @@ void main()
     instances[i] = g;
     if (frame.denseRotations != 0u)
         denseRotations[i] = denseRotation(instanceRotation(g));
+    const mat3 worldFromObject = rotationMatrix(instance.rotation);
+    const uint nodes = frame.denseRotations == 0u && i < frame.instanceCount ? 32u : 0u;
+    for (uint n = 0u; n < nodes; ++n) {
+        const Sh6 basis = shBasis6(worldFromObject * kShNodes[n].xyz);
+        vec3 radiance = vec3(0.0);
+        [[unroll]] for (int k = 0; k < 36; ++k)
+            radiance += basis.c[k] * frame.light[k].rgb;
+        skyNodes[32u * i + n] = vec4(radiance * kShNodes[n].w, 0.0);
+    }
 }

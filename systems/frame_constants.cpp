@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 namespace penumbra {
 
@@ -16,7 +17,7 @@ namespace {
 // 2 / ((1 - z_i^2) P_n'(z_i)^2), up to degree 2n - 1), 11 equal turns about it.
 struct SphereRule {
     static constexpr int kRows = 6, kTurns = 11;
-    std::array<glm::dvec4, kRows * kTurns> points; // w: weight
+    std::vector<glm::dvec4> points; // w: weight
 
     SphereRule()
     {
@@ -35,8 +36,7 @@ struct SphereRule {
             const double weight = 2 / (s * s * slope * slope) * 2 * std::numbers::pi / kTurns;
             for (int turn = 0; turn < kTurns; ++turn) {
                 const double angle = 2 * std::numbers::pi * turn / kTurns;
-                points[static_cast<std::size_t>(row * kTurns + turn)] =
-                    glm::dvec4(s * std::cos(angle), s * std::sin(angle), z, weight);
+                points.emplace_back(s * std::cos(angle), s * std::sin(angle), z, weight);
             }
         }
     }
@@ -141,13 +141,22 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     for (int i = 0; i < 6; ++i)
         frame.frustum[i] = planes[i] / length(vec3(planes[i]));
 
-    for (int k = 0; k < 16; ++k)
+    for (int k = 0; k < 36; ++k)
         frame.light[k] = vec4(light[static_cast<std::size_t>(k)], 0);
-    for (int n = 0; n < 32; ++n) {
-        frame.lightNodes[n] =
-            vec4(vec3(radianceOf(light, glm::dvec3(kShNodes[n]))) * kShNodes[n].w, 0);
-    }
     return frame;
+}
+
+SkyNodes skyNodes(const FrameConstants& frame, const mat3& worldFromObject)
+{
+    SkyNodes nodes;
+    for (int n = 0; n < 32; ++n) {
+        const Sh6 basis = shBasis6(worldFromObject * vec3(kShNodes[n]));
+        vec3 radiance(0);
+        for (int k = 0; k < 36; ++k)
+            radiance += basis.c[k] * vec3(frame.light[k]);
+        nodes[static_cast<std::size_t>(n)] = radiance * kShNodes[n].w;
+    }
+    return nodes;
 }
 
 } // namespace penumbra

@@ -34,4 +34,9 @@ LightSh rotatedLight(const LightSh& light, const mat3& rotation);
 FrameConstants frameConstants(const View& view, const LightSh& light,
                               float backgroundIntensity = 1);
 
+// Light of the frame at the nodes kShNodes, which lie in the axes of an object, times their
+// weights: what pass instance_update writes per instance.
+using SkyNodes = std::array<vec3, 32>;
+SkyNodes skyNodes(const FrameConstants& frame, const mat3& worldFromObject);
+
 } // namespace penumbra

@@ -2,6 +2,7 @@
 
 #include "runtime/vk/transfer.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace penumbra {
@@ -40,6 +41,8 @@ constexpr Binding kBindings[] = {
     {kFirstSkyBinding + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
     {kPixelRadianceBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
      VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kSkyNodeBinding, kStorage},
+    {kSkyNodeBinding + 1, kTexels},
     {kSkyLobeBinding, kTexels, VK_SHADER_STAGE_COMPUTE_BIT},
 };
 
@@ -173,6 +176,8 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
         b.surfaceVertices = maker.with("surface vertices", data.surfaces.vertices,
                                        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     b.denseRotations = maker.empty("dense rotations", rows * sizeof(DenseRotation), kStorageUse);
+    b.skyNodes = maker.empty("light at nodes", data.instances.size() * 32 * sizeof(vec4), kTexelUse,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
         GpuSceneSlot slot;
         slot.frame = maker.upload("frame constants", sizeof(FrameConstants),
@@ -235,6 +240,8 @@ void GpuScene::writeSet(const Device& device, VkDescriptorSet set, std::uint32_t
         .storageBuffer(17, b.denseRotations.handle)
         .storageBuffer(18, b.fieldSamples.handle)
         .storageBuffer(19, receivers.receivers.handle)
+        .storageBuffer(kSkyNodeBinding, b.skyNodes.handle)
+        .texels(kSkyNodeBinding + 1, b.skyNodes.texels)
         .texels(kSkyLobeBinding, slot.skyLobes.texels)
         .write();
     // Every sampler is bound, also where no pass reads it: lavapipe reads descriptors that were
@@ -297,6 +304,10 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
+    if (!std::equal(m_light.begin(), m_light.end(), std::begin(frame.light))) {
+        std::copy(std::begin(frame.light), std::end(frame.light), m_light.begin());
+        touchAll();
+    }
     if (slot.skyLobesAt != m_skyLobesAt && mirrors())
         std::memcpy(slot.skyLobes.mapped, m_skyLobes.texels.data(),
                     m_skyLobes.texels.size() * sizeof(vec4));

@@ -21,7 +21,7 @@ std::span<const Binding> sceneBindings();
 
 struct GpuSceneBuffers {
     Buffer fields, instances, fieldSamples, receivers, indices, bounds, clusters;
-    Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations;
+    Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations, skyNodes;
     Buffer surfaceVertices; // none: all meshes are plain
 };
 
@@ -74,6 +74,7 @@ public:
                   const ReceiverBuffers& receivers) const;
 
     // All rows count as changed: after another kernel was chosen, which needs other constants.
+    // Another light does so too.
     void touchAll();
 
     [[nodiscard]] const SceneData& data() const { return m_data; }
@@ -97,6 +98,7 @@ private:
     std::vector<std::uint32_t> m_changed; // rows to upload, each once
     std::vector<bool> m_isChanged;
     GpuSkies m_skies;
+    std::array<vec4, 36> m_light{}; // of the last frame
     SkyLobes m_skyLobes;
     std::uint64_t m_skyLobesAt = 0;
 };

@@ -123,7 +123,8 @@ std::size_t nodeCount(std::uint32_t level)
 vec3 nodeDirection(std::uint32_t level, std::size_t node)
 {
     const std::uint32_t side = skyLobeSide(level);
-    const vec2 at(static_cast<float>(node % side), static_cast<float>(node / side));
+    const std::size_t column = node % side, row = node / side;
+    const vec2 at(static_cast<float>(column), static_cast<float>(row));
     return octahedralDirection(at / static_cast<float>(side - 1));
 }
 

@@ -162,6 +162,8 @@ Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folde
     for (std::size_t i = 0; i < count; ++i)
         if (done[i] == 0)
             open.push_back(i);
+    if (!open.empty())
+        nextFileTick(); // sources written just now count as unchanged since
     observer.begin(open.size());
     buildOpen(manifest, build, open, observer, outcome.assets);
 

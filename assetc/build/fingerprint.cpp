@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <ctime>
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -58,6 +60,16 @@ std::int64_t fileClock()
     timespec now{};
     ::clock_gettime(CLOCK_REALTIME_COARSE, &now);
     return nanoseconds(now);
+}
+
+std::int64_t nextFileTick()
+{
+    timespec begin{}; // files may be stamped by this clock, which runs ahead of fileClock
+    ::clock_gettime(CLOCK_REALTIME, &begin);
+    std::int64_t now = fileClock();
+    for (int i = 0; i < 250 && now <= nanoseconds(begin); ++i, now = fileClock())
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    return now; // too early where somebody sets the clock back meanwhile
 }
 
 Fingerprint fingerprintFile(const std::filesystem::path& path, std::int64_t since)

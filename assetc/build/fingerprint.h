@@ -25,6 +25,10 @@ FileStamp stampFile(const std::filesystem::path& path);
 // The clock that stamps files; a file changed after a call has `changed` at or above its result.
 std::int64_t fileClock();
 
+// Waits, some milliseconds, for a tick of that clock after which whatever was changed before the
+// call has `changed` below it, and returns it.
+std::int64_t nextFileTick();
+
 struct Fingerprint {
     FileStamp stamp;
     std::string hash; // of the content, 32 hexadecimal digits; empty where nothing can be read

@@ -84,8 +84,9 @@ Canvas drawMesh(const MeshGeometry& mesh, const EmbreeScene& scene, int width, i
             vec3 sum(0);
             int hits = 0;
             for (int sample = 0; sample < kSamples * kSamples; ++sample) {
-                const float dx = (static_cast<float>(sample % kSamples) + 0.5f) / kSamples;
-                const float dy = (static_cast<float>(sample / kSamples) + 0.5f) / kSamples;
+                const int column = sample % kSamples, row = sample / kSamples;
+                const float dx = (static_cast<float>(column) + 0.5f) / kSamples;
+                const float dy = (static_cast<float>(row) + 0.5f) / kSamples;
                 const vec3 origin = view.corner +
                                     (static_cast<float>(x) + dx) * view.step * view.right -
                                     (static_cast<float>(y) + dy) * view.step * view.up;

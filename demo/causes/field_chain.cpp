@@ -4,6 +4,7 @@
 #include "demo/reference/shade_all.h"
 #include "demo/traced_scene.h"
 #include "shaders/shared/visibility.h"
+#include "systems/frame_constants.h"
 
 #include <algorithm>
 #include <bit>
@@ -43,16 +44,10 @@ std::vector<ChainReceiver> chooseReceivers(const FieldChainInput& in,
     return chosen;
 }
 
-// The environment's order 4 at the nodes of kernel exact.
-std::array<vec3, 32> nodesOfOrder4(const FrameConstants& constants)
+FrameConstants withOrder4(FrameConstants constants)
 {
-    std::array<vec3, 32> nodes{};
-    for (std::size_t n = 0; n < nodes.size(); ++n) {
-        const Sh4 basis = shBasis(vec3(kShNodes[n]));
-        for (int k = 0; k < 16; ++k)
-            nodes[n] += kShNodes[n].w * basis.c[k] * vec3(constants.light[k]);
-    }
-    return nodes;
+    std::fill(std::begin(constants.light) + 16, std::end(constants.light), vec4(0));
+    return constants;
 }
 
 // Visibility by instance and mesh: that of what it shows, and of what it blocks.
@@ -62,7 +57,7 @@ class Chain {
 public:
     Chain(const FieldChainInput& in, const Objects& objects)
         : m_in(in), m_objects(objects), m_points(makeSamplePoints(std::bit_ceil(in.samples))),
-          m_nodes(nodesOfOrder4(in.constants))
+          m_order4(withOrder4(in.constants))
     {}
 
     using Steps = std::array<vec3, kFieldCauses.size() + 1>;
@@ -104,10 +99,11 @@ public:
 
         Steps steps{};
         integrate(chosen, receiver, origin, own, traced, shift, steps);
-        steps[2] = product(receiver, own, traced, risen, false);
-        steps[3] = product(receiver, own, plain, risen, false);
-        steps[4] = product(receiver, ownRounded, rounded, risen, false);
-        steps[5] = product(receiver, ownRounded, rounded, risen, true);
+        const mat3 axes = objectFromWorld(self);
+        steps[2] = product(receiver, axes, own, traced, risen, m_order4);
+        steps[3] = product(receiver, axes, own, plain, risen, m_order4);
+        steps[4] = product(receiver, axes, ownRounded, rounded, risen, m_order4);
+        steps[5] = product(receiver, axes, ownRounded, rounded, risen, m_in.constants);
         const vec3 albedo(self.material);
         for (vec3& step : steps)
             step *= albedo;
@@ -157,10 +153,11 @@ private:
             flush();
     }
 
-    // As systems/techniques/shadow_fields/combine_cpu.cpp walks the occluders.
-    [[nodiscard]] vec3 product(const Receiver& receiver, const Sh4& own,
+    // As systems/techniques/shadow_fields/combine_cpu.cpp walks the occluders. `axes`: object from
+    // world.
+    [[nodiscard]] vec3 product(const Receiver& receiver, const mat3& axes, const Sh4& own,
                                const std::vector<Sh4>& occluders, const std::vector<float>& weights,
-                               bool wholeLight) const
+                               const FrameConstants& constants) const
     {
         const auto weighted = [](Sh4 visibility, float weight) {
             for (float& c : visibility.c)
@@ -174,15 +171,18 @@ private:
             for (std::size_t i = 0; i < occluders.size(); ++i)
                 transfer = shProduct(weighted(occluders[i], weights[i]), transfer);
             for (int k = 0; k < 16; ++k)
-                sum += transfer.c[k] * vec3(m_in.constants.light[k]);
+                sum += transfer.c[k] * vec3(constants.light[k]);
             return sum;
         }
-        ShNodal through = shNodes(own);
+        const ShRotation toObject = shRotation(axes);
+        ShNodal through = shNodes(shRotate(own, toObject));
         for (std::size_t i = 0; i < occluders.size(); ++i)
-            through = shMultiply(through, shNodes(weighted(occluders[i], weights[i])));
-        const ShNodal transfer = transferNodal(through, receiver);
-        for (std::size_t n = 0; n < m_nodes.size(); ++n)
-            sum += transfer.v[n] * (wholeLight ? vec3(m_in.constants.lightNodes[n]) : m_nodes[n]);
+            through = shMultiply(through,
+                                 shNodes(shRotate(weighted(occluders[i], weights[i]), toObject)));
+        const ShNodal transfer = transferNodal(through, turnReceiver(axes, receiver));
+        const SkyNodes light = skyNodes(constants, glm::transpose(axes));
+        for (std::size_t n = 0; n < light.size(); ++n)
+            sum += transfer.v[n] * light[n];
         return sum;
     }
 
@@ -200,7 +200,7 @@ private:
     const FieldChainInput& m_in;
     const Objects& m_objects;
     std::vector<glm::uvec2> m_points;
-    std::array<vec3, 32> m_nodes;
+    FrameConstants m_order4;
 };
 
 } // namespace

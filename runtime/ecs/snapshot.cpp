@@ -83,9 +83,9 @@ private:
             uint16_t count = 0;
             archetype->mask().forEach([&](ComponentId) { ++count; });
             put(count);
-            for (uint16_t i = 0; i < m_components.size(); ++i)
+            for (size_t i = 0; i < m_components.size(); ++i)
                 if (archetype->mask().test(m_components[i]))
-                    put(i);
+                    put(static_cast<uint16_t>(i));
             putCount(archetype->count());
             for (const Entity entity : archetype->entities())
                 put(entity.index);
@@ -151,9 +151,9 @@ private:
     {
         const std::vector<Entity>& singletons = WorldAccess::singletons(m_world);
         std::vector<std::pair<uint16_t, Entity>> living;
-        for (uint16_t i = 0; i < m_components.size(); ++i)
+        for (size_t i = 0; i < m_components.size(); ++i)
             if (m_components[i] < singletons.size() && m_world.alive(singletons[m_components[i]]))
-                living.emplace_back(i, singletons[m_components[i]]);
+                living.emplace_back(static_cast<uint16_t>(i), singletons[m_components[i]]);
         putCount(living.size());
         for (const auto& [component, entity] : living) {
             put(component);

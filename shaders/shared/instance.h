@@ -108,15 +108,15 @@ struct CullResult {
 struct FrameConstants {
     mat4 clipFromWorld;
     mat4 worldFromClip;
-    vec4 eye;            // world; w unused
-    vec4 frustum[6];     // planes, normals inwards, world
-    vec4 lightNodes[32]; // environment radiance at kShNodes times the node's weight; w unused
-    vec4 light[16];      // environment radiance in SH
+    vec4 eye;                   // world; w unused
+    vec4 frustum[6];            // planes, normals inwards, world
+    vec4 light[36];             // environment radiance in SH of order 6
     vec4 skyRotation[kSkyMaps]; // quaternion x, y, z, w: map from world
     uint clusterCount;
     uint instanceCount; // the rows of lights follow those of instances
     uint lightCount;
-    uint denseRotations;       // 1: instance_update writes the matrices of kernel literal too
+    uint denseRotations; // 1: instance_update writes what kernel literal needs besides instances;
+                         // 0: what exact does
     float backgroundIntensity; // factor of both maps
     uint culls;                // kCull… bits
     float skyIntensity[kSkyMaps];
@@ -213,6 +213,21 @@ PENUMBRA_FN FieldEntity instanceField(GpuInstance g)
     return e;
 }
 
+// Rotation and no scale: the axes of an instance from those of the world.
+PENUMBRA_FN mat3 objectFromWorld(GpuInstance g)
+{
+    return mat3(vec3(g.worldFromObject0), vec3(g.worldFromObject1), vec3(g.worldFromObject2)) *
+           (1.0f / g.material1.y);
+}
+
+// instanceField with the field's SH turned into another frame than the world's.
+PENUMBRA_FN FieldEntity instanceFieldIn(mat3 frameFromWorld, GpuInstance g)
+{
+    FieldEntity e = instanceField(g);
+    e.rotation = shRotation(frameFromWorld * (g.sphere.w * transpose(e.radiiFromWorld)));
+    return e;
+}
+
 // A point of the world relative to the field's centre, field axes, unit: bounding radii.
 PENUMBRA_FN vec3 fieldPoint(FieldEntity e, vec3 world)
 {
@@ -288,8 +303,8 @@ static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 1072 &&
-              offsetof(penumbra::FrameConstants, clusterCount) == 1040);
+static_assert(sizeof(penumbra::FrameConstants) == 880 &&
+              offsetof(penumbra::FrameConstants, clusterCount) == 848);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif
 #endif

@@ -63,6 +63,46 @@ PENUMBRA_FN Sh4 shBasis(vec3 d)
     return b;
 }
 
+struct Sh6 {
+    float c[36];
+};
+
+// Order 6, for light: kernel exact takes two bands more of it than fields have.
+PENUMBRA_FN Sh6 shBasis6(vec3 d)
+{
+    const float x = d.x, y = d.y, z = d.z;
+    const float z2 = z * z;
+    const float c2 = x * x - y * y, s2 = 2.0f * x * y; // (x + i y)^m
+    const float c3 = c2 * x - s2 * y, s3 = s2 * x + c2 * y;
+    const float c4 = c3 * x - s3 * y, s4 = s3 * x + c3 * y;
+    const float c5 = c4 * x - s4 * y, s5 = s4 * x + c4 * y;
+    const Sh4 low = shBasis(d);
+    Sh6 b;
+    for (int i = 0; i < 16; ++i)
+        b.c[i] = low.c[i];
+    b.c[16] = 0.625835735f * s4;
+    b.c[17] = 1.77013077f * z * s3;
+    b.c[18] = 0.473087348f * (7.0f * z2 - 1.0f) * s2;
+    b.c[19] = 0.669046544f * z * (7.0f * z2 - 3.0f) * y;
+    b.c[20] = 0.105785547f * ((35.0f * z2 - 30.0f) * z2 + 3.0f);
+    b.c[21] = 0.669046544f * z * (7.0f * z2 - 3.0f) * x;
+    b.c[22] = 0.473087348f * (7.0f * z2 - 1.0f) * c2;
+    b.c[23] = 1.77013077f * z * c3;
+    b.c[24] = 0.625835735f * c4;
+    b.c[25] = 0.656382057f * s5;
+    b.c[26] = 2.07566231f * z * s4;
+    b.c[27] = 0.489238299f * (9.0f * z2 - 1.0f) * s3;
+    b.c[28] = 2.39676839f * z * (3.0f * z2 - 1.0f) * s2;
+    b.c[29] = 0.452946651f * ((21.0f * z2 - 14.0f) * z2 + 1.0f) * y;
+    b.c[30] = 0.116950322f * z * ((63.0f * z2 - 70.0f) * z2 + 15.0f);
+    b.c[31] = 0.452946651f * ((21.0f * z2 - 14.0f) * z2 + 1.0f) * x;
+    b.c[32] = 2.39676839f * z * (3.0f * z2 - 1.0f) * c2;
+    b.c[33] = 0.489238299f * (9.0f * z2 - 1.0f) * c3;
+    b.c[34] = 2.07566231f * z * c4;
+    b.c[35] = 0.656382057f * c5;
+    return b;
+}
+
 // A function that is symmetric about `axis`: scale[l] are its zonal coefficients over the basis
 // value, that is, the function is sum_l scale[l] sum_m Y_lm(axis) Y_lm(w).
 PENUMBRA_FN Sh4 shZonal(vec3 axis, vec4 scale)
@@ -111,27 +151,18 @@ PENUMBRA_FN ShTurn shTurn(float cosine, float sine)
     return turn;
 }
 
-// Euler constants of a rotation matrix (columns are the images of x, y, z).
+// Euler constants of a rotation matrix (columns are the images of x, y, z). Near the poles any
+// alpha will do, as gamma is what is left once it has been undone.
 PENUMBRA_FN ShRotation shRotation(mat3 r)
 {
-    const float cosBeta = clamp(r[2][2], -1.0f, 1.0f);
-    const float sin2 =
-        r[2][0] * r[2][0] + r[2][1] * r[2][1]; // exact near 0, where 1 - cos^2 is not
-    const float sinBeta = sqrt(sin2);
+    const float sin2 = r[2][0] * r[2][0] + r[2][1] * r[2][1];
+    const float scale = sin2 > 1e-30f ? inversesqrt(sin2) : 0.0f;
+    const float cosAlpha = sin2 > 1e-30f ? r[2][0] * scale : 1.0f, sinAlpha = r[2][1] * scale;
     ShRotation rotation;
-    rotation.beta = shTurn(cosBeta, sinBeta);
-    // Below this the two turns about z cannot be told apart: all goes into gamma.
-    const float sin2Gamma = r[0][2] * r[0][2] + r[1][2] * r[1][2];
-    if (min(sin2, sin2Gamma) > 1e-8f) {
-        const float a = inversesqrt(sin2);
-        const float g = inversesqrt(sin2Gamma);
-        rotation.alpha = shTurn(r[2][0] * a, r[2][1] * a);
-        rotation.gamma = shTurn(-r[0][2] * g, r[1][2] * g);
-    } else {
-        const float n = inversesqrt(r[0][0] * r[0][0] + r[0][1] * r[0][1]);
-        rotation.alpha = shTurn(1.0f, 0.0f);
-        rotation.gamma = shTurn(cosBeta > 0.0f ? r[0][0] * n : -r[0][0] * n, r[0][1] * n);
-    }
+    rotation.alpha = shTurn(cosAlpha, sinAlpha);
+    rotation.beta = shTurn(r[2][2], cosAlpha * r[2][0] + sinAlpha * r[2][1]);
+    rotation.gamma =
+        shTurn(cosAlpha * r[1][1] - sinAlpha * r[1][0], cosAlpha * r[0][1] - sinAlpha * r[0][0]);
     return rotation;
 }
 

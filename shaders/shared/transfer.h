@@ -53,6 +53,14 @@ PENUMBRA_FN Receiver makeReceiver(GpuInstance g, uvec4 geometry, vec3 eye)
     return r;
 }
 
+// The directions in another frame than the world's; the position stays.
+PENUMBRA_FN Receiver turnReceiver(mat3 frameFromWorld, Receiver r)
+{
+    r.normal = frameFromWorld * r.normal;
+    r.mirror = frameFromWorld * r.mirror;
+    return r;
+}
+
 // Object space. `scale` is assets/mesh_asset.h's kSelfVisibilityScale.
 PENUMBRA_FN Sh4 selfVisibility(uvec4 bytes, float scale)
 {

@@ -1,4 +1,5 @@
 // `assetc build`: what is compiled again, and what is not.
+#include "assetc/build/fingerprint.h"
 #include "assets/environment.h"
 #include "assets/glb.h"
 #include "assets/mesh_codec.h"
@@ -329,6 +330,19 @@ TEST_F(BuildTest, ALightDoesNotReplaceTheMeshThatItNames)
 }
 
 // JSON cannot hold them as they are; the record does.
+// Scripts write sources and build at once. Nothing changes while it is compiled, so the second
+// build has nothing to do.
+TEST_F(BuildTest, SourcesWrittenThisMomentAreKnownAgain)
+{
+    for (int round = 0; round < 20; ++round) {
+        folder.write("new.obj", pyramid(round % 7 + 1));
+        const std::int64_t tick = nextFileTick();
+        EXPECT_NE(fingerprintFile(folder / "new.obj", tick).stamp, kAnyFile);
+        folder.write("new.obj", pyramid(1));
+        EXPECT_EQ(fingerprintFile(folder / "new.obj", tick).stamp, kAnyFile);
+    }
+}
+
 TEST_F(BuildTest, NamesNeedNotBeUtf8)
 {
     for (const char* name : {"\xff.mtl", "a%ff.mtl"})

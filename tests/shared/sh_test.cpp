@@ -1,3 +1,4 @@
+#include "assets/sh_basis.h"
 #include "shaders/shared/instance.h"
 
 #include "tests/shared/random_sphere.h"
@@ -133,6 +134,19 @@ TEST(Sh, RotationMovesTheFunction)
             const vec3 d = random.direction();
             EXPECT_NEAR(evaluate(g, d), evaluate(f, glm::transpose(r) * d), 2e-4);
         }
+    }
+}
+
+TEST(Sh, OrderSixIsTheGeneralBasis)
+{
+    RandomSphere random(7);
+    for (int trial = 0; trial < 100; ++trial) {
+        const vec3 d = random.direction();
+        std::array<double, 36> expected{};
+        shBasisAnyOrder(6, glm::dvec3(d), expected);
+        const Sh6 basis = shBasis6(d);
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_NEAR(basis.c[i], expected[i], 3e-6) << i;
     }
 }
 

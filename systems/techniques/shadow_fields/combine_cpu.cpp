@@ -3,6 +3,7 @@
 #include "shaders/shared/emitter.h"
 #include "shaders/shared/order.h"
 #include "shaders/shared/visibility.h"
+#include "systems/frame_constants.h"
 
 #include <algorithm>
 #include <bit>
@@ -87,16 +88,17 @@ struct LiteralProduct {
     }
 };
 
-// Kernel exact for one receiver.
+// Kernel exact for one receiver. Its nodes lie in the receiver's object.
 struct ExactProduct {
     const SceneData& scene;
     const CpuInstances& rows;
     Receiver receiver;
+    const mat3& objectFromWorld;
     vec3 position = receiver.position, normal = receiver.normal;
 
     [[nodiscard]] ShNodal occlude(const ShNodal& before, std::uint32_t row, float weight) const
     {
-        const FieldEntity entity = instanceField(rows.instances[row]);
+        const FieldEntity entity = instanceFieldIn(objectFromWorld, rows.instances[row]);
         const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
         const Sh4 visibility =
@@ -107,8 +109,8 @@ struct ExactProduct {
 
     [[nodiscard]] vec3 lightThrough(const ShNodal& through, std::uint32_t row) const
     {
-        const ShNodal transfer = transferNodal(through, receiver);
-        const FieldEntity light = instanceField(rows.instances[row]);
+        const ShNodal transfer = transferNodal(through, turnReceiver(objectFromWorld, receiver));
+        const FieldEntity light = instanceFieldIn(objectFromWorld, rows.instances[row]);
         const FieldGrid& grid = light.grid;
         const FieldCell cell = fieldCell(fieldPoint(light, position), grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, grid);
@@ -163,15 +165,16 @@ Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& 
     return transfer;
 }
 
-vec3 sharpReflection(const Receiver& receiver, const ShNodal& visibility,
-                     const FrameConstants& frame, const SkyLobes& sky)
+// `turned`: the receiver in the axes where the nodes lie.
+vec3 sharpReflection(const Receiver& receiver, const Receiver& turned, const ShNodal& visibility,
+                     const SkyNodes& light, const SkyLobes& sky)
 {
     const ZonalPolynomial phong = phongPolynomial(receiver.glossExponent);
     GlossSums sums{};
     for (int n = 0; n < 32; ++n) {
-        const float gloss = visibility.v[n] * glossAt(receiver, phong, vec3(kShNodes[n]));
+        const float gloss = visibility.v[n] * glossAt(turned, phong, vec3(kShNodes[n]));
         sums.visible += gloss * kShNodes[n].w;
-        sums.reflected += gloss * vec3(frame.lightNodes[n]);
+        sums.reflected += gloss * light[static_cast<std::size_t>(n)];
     }
     return skyGloss(receiver, sums,
                     filteredSky(sky, skyLobeDirection(receiver), receiver.glossExponent));
@@ -266,7 +269,8 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
 {
     const SceneCluster& cluster = scene.clusters[entities.cluster];
     const GpuInstance& self = instances.instances[cluster.instance];
-    const ShRotation worldFromObject = instanceRotation(self);
+    const mat3 axes = objectFromWorld(self);
+    const SkyNodes light = skyNodes(frame, glm::transpose(axes));
     for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
         const ReceiverTexels& texels = scene.receivers[cluster.firstReceiver + v];
         const Receiver receiver = makeReceiver(self, texels.geometry, vec3(frame.eye));
@@ -281,14 +285,14 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
             for (int k = 0; k < 16; ++k)
                 sum += transfer.c[k] * vec3(frame.light[k]);
         } else {
-            const ShNodal visibility =
-                walk(ExactProduct{scene, instances, receiver},
-                     shNodes(shRotate(ownVisibility, worldFromObject)), entities, sum);
-            const ShNodal transfer = transferNodal(visibility, receiver);
-            for (int n = 0; n < 32; ++n)
-                sum += transfer.v[n] * vec3(frame.lightNodes[n]);
+            const ShNodal visibility = walk(ExactProduct{scene, instances, receiver, axes},
+                                            shNodes(ownVisibility), entities, sum);
+            const Receiver turned = turnReceiver(axes, receiver);
+            const ShNodal transfer = transferNodal(visibility, turned);
+            for (std::size_t n = 0; n < light.size(); ++n)
+                sum += transfer.v[n] * light[n];
             if (sky != nullptr && mirrorsSky(receiver.glossFraction, receiver.glossExponent))
-                sum += sharpReflection(receiver, visibility, frame, *sky);
+                sum += sharpReflection(receiver, turned, visibility, light, *sky);
         }
         radiance[cluster.firstRadiance + v] =
             vec4(vec3(self.material) * sum + vec3(self.emission), 1);

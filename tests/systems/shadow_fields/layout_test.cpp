@@ -71,7 +71,6 @@ TEST(Layout, FrameConstants)
     EXPECT_SAME_OFFSET(frame, FrameConstants, worldFromClip);
     EXPECT_SAME_OFFSET(frame, FrameConstants, eye);
     EXPECT_SAME_OFFSET(frame, FrameConstants, frustum);
-    EXPECT_SAME_OFFSET(frame, FrameConstants, lightNodes);
     EXPECT_SAME_OFFSET(frame, FrameConstants, light);
     EXPECT_SAME_OFFSET(frame, FrameConstants, skyRotation);
     EXPECT_SAME_OFFSET(frame, FrameConstants, clusterCount);
