@@ -116,10 +116,11 @@ void Archetype::addBlock()
 
 void Archetype::growFirstBlock()
 {
-    // x4 up to one segment, then the full block: 1, 4, 16, 128 KiB.
+    // x4: 1, 4, 16 (one segment), 64, 256, 512 KiB.
+    const uint32_t full = m_segmentShift + kBlockSegmentShift;
     const uint32_t blockShift = m_blockShift < m_segmentShift
                                     ? std::min(m_blockShift + 2, m_segmentShift)
-                                    : m_segmentShift + kBlockSegmentShift;
+                                    : std::min(m_blockShift + 2, full);
     if (m_blocks.empty())
         return setBlockShift(blockShift);
     const std::vector<std::byte*> from = m_columnsAt;

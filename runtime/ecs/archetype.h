@@ -1,11 +1,12 @@
 // Archetype: the rows of all entities that have exactly the same components.
 //
-// A row's values lie in blocks, column by column. The first block grows 1 -> 4 -> 16 -> 128 KiB
-// (about: a block holds a power of two of rows), further blocks are full ones, so that small
-// archetypes stay small and large ones run at the speed of plain arrays. A segment is the part of a
-// block of about 16 KiB: the unit of change versions and of parallel work. Entity ids lie apart.
+// A row's values lie in blocks, column by column. The first block grows 1 -> 4 -> 16 -> 64 -> 256
+// -> 512 KiB (about: a block holds a power of two of rows), further blocks are full ones, so that
+// small archetypes stay small and large ones run at the speed of plain arrays. A segment is the
+// part of a block of about 16 KiB: the unit of change versions and of parallel work. Entity ids lie
+// apart.
 //
-//   block   [column 0: rows x bytes][gap][column 1: rows x bytes] …   eight segments when full
+//   block   [column 0: rows x bytes][gap][column 1: rows x bytes] …   32 segments when full
 //   row r   block r >> blockShift, at r & (blockRows - 1)
 //
 // A component split into lanes has one column per lane, side by side in the column list.
@@ -21,8 +22,8 @@ namespace penumbra::ecs {
 
 inline constexpr uint32_t kSegmentBytes = 16 * 1024; // half an L1 cache
 inline constexpr uint32_t kFirstBlockBytes = 1024;
-inline constexpr uint32_t kBlockSegmentShift =
-    3; // full block: 128 KiB, beyond it nothing is gained
+// Full block: 512 KiB. Where each loop begins, nothing is prefetched yet.
+inline constexpr uint32_t kBlockSegmentShift = 5;
 inline constexpr uint32_t kBlockSegments = 1u << kBlockSegmentShift;
 
 class alignas(64) Archetype { // a cache line

@@ -167,7 +167,8 @@ private:
     template <class F>
     void callAll(F& f, const Match& match) const; // all rows of any match, marked
     template <class F>
-    void callMarked(F& f, const Run& run) const; // marks, then callRun
+    void callMarked(F& f, const Run& run) const;   // marks, then callRun
+    static constexpr uint32_t kListedSegments = 8; // whose changed rows are listed at once
     template <class F>
     void callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const;
     template <class F>

@@ -74,8 +74,8 @@ uint16_t* Query<Terms...>::listChanged(const Match& match, uint32_t segment, uin
     return end;
 }
 
-// First all rows of the segments, which lie in one block, then the calls: one loop whose end is
-// hard to guess, not one for each segment.
+// First all rows of the segments, up to kListedSegments, which lie in one block, then the calls:
+// one loop whose end is hard to guess, not one for each segment.
 template <class... Terms>
 template <class F>
 void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const
@@ -83,8 +83,8 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, ui
     const Archetype& archetype = *match.archetype;
     const uint32_t shift = archetype.segmentShift();
     const uint32_t first = segment << shift;
-    std::array<uint16_t, kBlockSegments * kPageRows + 2> changed;
-    static_assert(kBlockSegments * kPageRows <= UINT16_MAX);
+    std::array<uint16_t, kListedSegments * kPageRows + 2> changed;
+    static_assert(kListedSegments * kPageRows <= UINT16_MAX);
     uint16_t* end = changed.data();
     for (uint32_t s = segment; s <= last; ++s) {
         if (!segmentPasses(match, s))

@@ -51,7 +51,7 @@ TEST(Archetype, KeepsValuesThroughAllBlockSizes)
     }
 }
 
-TEST(Archetype, BlocksGrowFromOneToAHundredAndTwentyEightKib)
+TEST(Archetype, BlocksGrowFromOneToFiveHundredAndTwelveKib)
 {
     Archetype archetype(0, componentSet<Position, Velocity>().mask); // 24 bytes a row
     const Entity entity{0, 1};
@@ -61,20 +61,22 @@ TEST(Archetype, BlocksGrowFromOneToAHundredAndTwentyEightKib)
         if (sizes.empty() || archetype.blockBytes() != sizes.back())
             sizes.push_back(archetype.blockBytes());
     }
-    ASSERT_GE(sizes.size(), 5u);
+    ASSERT_GE(sizes.size(), 7u);
     EXPECT_LE(sizes[0], 1024u);
     EXPECT_LE(sizes[1], 4 * 1024u);
     EXPECT_LE(sizes[2], 18 * 1024u); // with the gaps between columns
-    EXPECT_LE(sizes[3], 130 * 1024u);
-    EXPECT_GT(sizes[3], 64 * 1024u);
-    EXPECT_EQ(sizes[4], 2 * sizes[3]);
+    EXPECT_LE(sizes[3], 66 * 1024u);
+    EXPECT_LE(sizes[4], 258 * 1024u);
+    EXPECT_LE(sizes[5], 514 * 1024u);
+    EXPECT_GT(sizes[5], 256 * 1024u);
+    EXPECT_EQ(sizes[6], 2 * sizes[5]);
     EXPECT_LE(archetype.segmentRows() * 24, kSegmentBytes);
     EXPECT_GT(archetype.segmentRows() * 48, kSegmentBytes); // the largest power of two that fits
 
     while (archetype.count() > 10)
         archetype.removeRow(0, {1, 0});
     archetype.trim();
-    EXPECT_EQ(archetype.blockBytes(), sizes[3]);
+    EXPECT_EQ(archetype.blockBytes(), sizes[5]);
 }
 
 TEST(Archetype, RemoveFillsTheGapWithTheLastRow)
