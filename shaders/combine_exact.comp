@@ -81,26 +81,28 @@ float risen(vec4 sphere, uint v)
     return horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
 }
 
-void occlude(uint row)
+void occlude(uint entry)
 {
-    const GpuInstance occluder = loadInstance(row);
+    const GpuInstance occluder = loadInstance(entryRow(entry));
     const FieldEntity entity = instanceFieldIn(axes, occluder);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
         visibility[v] =
-            shMultiply(visibility[v], occlusion(entity, receiver[v].position, risen(occluder.sphere, v)));
+            shMultiply(visibility[v],
+                       occlusion(entity, receiver[v].position, entryShare(entry) * risen(occluder.sphere, v)));
 }
 
 // `possible`: occluders that `visibility` has not got yet and that may stand before the light, as bits.
-vec3 localLight(GpuInstance light, uint possible, uint v)
+vec3 localLight(GpuInstance light, float share, uint possible, uint v)
 {
     ShNodal through = visibility[v];
     for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
-        const GpuInstance occluder = loadInstance(listed(kListOccluders + uint(findLSB(bits))));
-        const float weight =
-            orderWeight(occluder.sphere, light.sphere, receiver[v].position) * risen(occluder.sphere, v);
+        const uint entry = listed(kListOccluders + uint(findLSB(bits)));
+        const GpuInstance occluder = loadInstance(entryRow(entry));
+        const float weight = entryShare(entry) * risen(occluder.sphere, v) *
+                             orderWeight(occluder.sphere, light.sphere, receiver[v].position);
         through = shMultiply(through, occlusion(instanceFieldIn(axes, occluder), receiver[v].position, weight));
     }
-    return risen(light.sphere, v) * light.material.rgb *
+    return share * risen(light.sphere, v) * light.material.rgb *
            lightThrough(transferNodal(through, inObject(v)), instanceFieldIn(axes, light), receiver[v]);
 }
 
@@ -157,10 +159,10 @@ void main()
             const uint at = kListLights + 3u * l;
             for (const uint before = listed(at + 1u); next < before; ++next)
                 occlude(listed(kListOccluders + next));
-            const GpuInstance light = loadInstance(listed(at));
-            const uint possible = listed(at + 2u);
+            const uint entry = listed(at), possible = listed(at + 2u);
+            const GpuInstance light = loadInstance(entryRow(entry));
             [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-                sum[v] += localLight(light, possible, v);
+                sum[v] += localLight(light, entryShare(entry), possible, v);
         }
     }
     for (; next < occluders; ++next)

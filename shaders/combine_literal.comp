@@ -36,22 +36,26 @@ Sh4 sampleField(FieldCell cell, FieldGrid grid, uint channel)
     return sum;
 }
 
-Sh4 occlude(Sh4 transfer, uint occluder, Receiver receiver, float order)
+Sh4 occlude(Sh4 transfer, uint entry, Receiver receiver, float order)
 {
+    const uint occluder = entryRow(entry);
     const FieldEntity entity = instanceField(instances[occluder]);
     const FieldCell cell = fieldCell(fieldPoint(entity, receiver.position), entity.grid);
     const float weight =
-        order * horizonWeight(receiver.normal, entity.center - receiver.position, instances[occluder].sphere.w);
+        order * entryShare(entry) *
+        horizonWeight(receiver.normal, entity.center - receiver.position, instances[occluder].sphere.w);
     const Sh4 visibility =
         fieldVisibility(sampleField(cell, entity.grid, 0u), entity.bandScale * (weight * cell.decay));
     return shProduct(shRotateDense(visibility, denseRotations[occluder]), transfer);
 }
 
-vec3 lightThrough(Sh4 transfer, uint light, Receiver receiver)
+vec3 lightThrough(Sh4 transfer, uint entry, Receiver receiver)
 {
+    const uint light = entryRow(entry);
     const FieldEntity entity = instanceField(instances[light]);
     const FieldCell cell = fieldCell(fieldPoint(entity, receiver.position), entity.grid);
-    const float weight = horizonWeight(receiver.normal, entity.center - receiver.position, instances[light].sphere.w);
+    const float weight = entryShare(entry) * horizonWeight(receiver.normal, entity.center - receiver.position,
+                                                           instances[light].sphere.w);
     vec3 b;
     [[unroll]] for (uint channel = 0u; channel < 3u; ++channel) {
         const Sh4 source =
@@ -77,13 +81,15 @@ void main()
         for (uint l = 0u; l < lights; ++l) {
             const uint at = kListLights + 3u * l;
             const uint light = listed(at);
+            const vec4 lightSphere = instances[entryRow(light)].sphere;
             for (const uint before = listed(at + 1u); next < before; ++next)
                 transfer = occlude(transfer, listed(kListOccluders + next), receiver, 1.0);
             Sh4 through = transfer;
             for (uint bits = listed(at + 2u); bits != 0u; bits &= bits - 1u) {
                 const uint occluder = listed(kListOccluders + uint(findLSB(bits)));
-                through = occlude(through, occluder, receiver,
-                                  orderWeight(instances[occluder].sphere, instances[light].sphere, receiver.position));
+                through = occlude(
+                    through, occluder, receiver,
+                    orderWeight(instances[entryRow(occluder)].sphere, lightSphere, receiver.position));
             }
             b += lightThrough(through, light, receiver);
         }

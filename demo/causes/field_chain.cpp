@@ -76,10 +76,10 @@ public:
         const ShRotation worldFromObject = instanceRotation(self);
         const Sh4 own = m_objects.at({chosen.instance, m_in.data.instances[chosen.instance].mesh})
                             .above(origin, receiver.normal, m_points, shift);
-        const std::vector<std::uint32_t>& rows = chosen.cluster->occluders;
         std::vector<Sh4> traced, plain, rounded; // [occluder] visibility, world
         std::vector<float> risen;
-        for (const std::uint32_t row : rows) {
+        for (const std::uint32_t entry : chosen.cluster->occluders) {
+            const std::uint32_t row = entryRow(entry);
             const GpuInstance& g = m_in.rows.instances[row];
             const PointVisibility& object = m_objects.at({row, *m_in.data.instances[row].occluder});
             traced.push_back(object.at(origin, m_points, shift));
@@ -92,8 +92,9 @@ public:
             };
             plain.push_back(world(nodes.plain));
             rounded.push_back(world(nodes.rounded));
-            risen.push_back(
-                horizonWeight(receiver.normal, vec3(g.sphere) - receiver.position, g.sphere.w));
+            risen.push_back(entryShare(entry) * horizonWeight(receiver.normal,
+                                                              vec3(g.sphere) - receiver.position,
+                                                              g.sphere.w));
         }
         const Sh4 ownRounded = roundedOwn(own, worldFromObject);
 
@@ -225,9 +226,9 @@ Result<FieldChain> traceFieldChain(const FieldChainInput& in)
     for (const ChainReceiver& receiver : receivers) {
         if (done)
             done = need(receiver.instance, in.data.instances[receiver.instance].mesh);
-        for (const std::uint32_t row : receiver.cluster->occluders)
+        for (const std::uint32_t entry : receiver.cluster->occluders)
             if (done)
-                done = need(row, *in.data.instances[row].occluder);
+                done = need(entryRow(entry), *in.data.instances[entryRow(entry)].occluder);
     }
     if (!done)
         return done.error();

@@ -11,10 +11,10 @@ PENUMBRA_CONST uint kNoOwner = 0xffffffffu;
 PENUMBRA_CONST uint kClusterReceivers =
     64u; // receivers per cluster; a mesh's last cluster is padded to it
 PENUMBRA_CONST uint kMaxClusterOccluders =
-    32u; // list entries per cluster; farther ones are dropped and counted
+    32u; // per cluster; the least important ones beyond that are dropped and counted
 PENUMBRA_CONST uint kMaxClusterLights = 16u; // local lights per cluster; likewise
-// What pass entity_sort writes per visible cluster: counts of occluders and lights; rows of the
-// occluders, near to far; of each light, near to far, its row, how many leading occluders stand
+// What pass entity_sort writes per visible cluster: counts of occluders and lights; entries of the
+// occluders, near to far; of each light, near to far, its entry, how many leading occluders stand
 // before it at every receiver, and which of the others may, as bits.
 PENUMBRA_CONST uint kListOccluders = 2u;
 PENUMBRA_CONST uint kListLights = kListOccluders + kMaxClusterOccluders;
@@ -137,6 +137,24 @@ struct FieldEntity {
     FieldGrid grid;
     vec4 bandScale;
 };
+
+// An entry of a cluster's lists: the row of an instance or light, below 2^24, and its share in
+// 1/255: less than 1 where the list is full and the entity is hardly more important than one left
+// out.
+PENUMBRA_FN uint listEntry(uint row, float share)
+{
+    return row | (uint(share * 255.0f + 0.5f) << 24u);
+}
+
+PENUMBRA_FN uint entryRow(uint entry)
+{
+    return entry & 0xffffffu;
+}
+
+PENUMBRA_FN float entryShare(uint entry)
+{
+    return float(entry >> 24u) * (1.0f / 255.0f);
+}
 
 PENUMBRA_FN vec3 rotate(vec4 q, vec3 v)
 {

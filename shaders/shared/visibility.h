@@ -22,19 +22,42 @@ PENUMBRA_FN bool facesAway(vec3 view, vec3 axis, float cutoff, float radius)
     return along * cutoff - across * sqrt(max(1.0f - cutoff * cutoff, 0.0f)) > radius;
 }
 
-// A sphere lies under the horizon of every receiver of a cluster: to = its centre - the cluster's
-// centre. The largest dot(n, to) over the cone of normals is |to| cos(max(0, theta - a)).
-PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cutoff, float radius)
+// The largest dot(n, to) over the cone of normals n of a cluster: |to| cos(max(0, theta - a)).
+// to = a point - the cluster's centre.
+PENUMBRA_FN float highestOver(vec3 to, vec3 axis, float cutoff)
 {
-    if (cutoff <= 0.0f)
-        return false;
     const float distance = length(to);
     const float along = dot(axis, to);
     const float across = length(to - along * axis);
-    const float highest = along >= cutoff * distance
-                              ? distance
-                              : along * cutoff + across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
-    return highest < -(radius + sphereRadius);
+    return cutoff <= 0.0f || along >= cutoff * distance
+               ? distance
+               : along * cutoff + across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
+}
+
+// A sphere lies under the horizon of every receiver of a cluster: to = its centre - the cluster's
+// centre.
+PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cutoff, float radius)
+{
+    return highestOver(to, axis, cutoff) < -(radius + sphereRadius);
+}
+
+// How much an entity can matter to a cluster: its solid angle, about, and 0 from where it is out of
+// influence or under the horizon of every receiver. It changes smoothly where the entity moves.
+PENUMBRA_FN float entityImportance(vec3 to, float sphereRadius, float influence, vec3 axis,
+                                   float cutoff, float radius)
+{
+    const float within = clamp(1.0f - (length(to) - radius) / influence, 0.0f, 1.0f);
+    const float risen =
+        clamp(1.0f + highestOver(to, axis, cutoff) / (radius + sphereRadius), 0.0f, 1.0f);
+    const float square = sphereRadius * sphereRadius;
+    return within * risen * square / (square + dot(to, to));
+}
+
+// What of an entity counts, beside those of a full list: `least` is the importance of the most
+// important one left out, 0 where none is. 0 at equal importance, so the two change places unseen.
+PENUMBRA_FN float entityShare(float importance, float least)
+{
+    return least > 0.0f ? clamp(4.0f * (importance / least - 1.0f), 0.0f, 1.0f) : 1.0f;
 }
 
 // How much a sphere counts for one receiver: 0 once it lies under the receiver's horizon, where the

@@ -139,29 +139,35 @@ struct ExactProduct {
 template <class Product, class Transfer>
 Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& entities, vec3& sum)
 {
-    const auto risen = [&](std::uint32_t row) {
-        const vec4 sphere = product.rows.instances[row].sphere;
-        return horizonWeight(product.normal, vec3(sphere) - product.position, sphere.w);
+    const auto weight = [&](std::uint32_t entry) {
+        const vec4 sphere = product.rows.instances[entryRow(entry)].sphere;
+        return entryShare(entry) *
+               horizonWeight(product.normal, vec3(sphere) - product.position, sphere.w);
     };
     std::uint32_t next = 0;
+    const auto occludeNext = [&] {
+        const std::uint32_t entry = entities.occluders[next++];
+        transfer = product.occlude(transfer, entryRow(entry), weight(entry));
+    };
     for (const ClusterLight& light : entities.lights) {
-        for (; next < light.before; ++next)
-            transfer = product.occlude(transfer, entities.occluders[next],
-                                       risen(entities.occluders[next]));
+        while (next < light.before)
+            occludeNext();
         Transfer through = transfer;
-        const GpuInstance& source = product.rows.instances[light.row];
+        const std::uint32_t lightRow = entryRow(light.entry);
+        const GpuInstance& source = product.rows.instances[lightRow];
         for (std::uint32_t bits = light.possible; bits != 0; bits &= bits - 1) {
-            const std::uint32_t row =
+            const std::uint32_t entry =
                 entities.occluders[static_cast<std::size_t>(std::countr_zero(bits))];
+            const std::uint32_t row = entryRow(entry);
             const float order =
                 orderWeight(product.rows.instances[row].sphere, source.sphere, product.position);
-            through = product.occlude(through, row, order * risen(row));
+            through = product.occlude(through, row, order * weight(entry));
         }
-        sum += risen(light.row) * vec3(source.material) * product.lightThrough(through, light.row);
+        sum +=
+            weight(light.entry) * vec3(source.material) * product.lightThrough(through, lightRow);
     }
-    for (; next < entities.occluders.size(); ++next)
-        transfer =
-            product.occlude(transfer, entities.occluders[next], risen(entities.occluders[next]));
+    while (next < entities.occluders.size())
+        occludeNext();
     return transfer;
 }
 
@@ -180,6 +186,30 @@ vec3 sharpReflection(const Receiver& receiver, const Receiver& turned, const ShN
                     filteredSky(sky, skyLobeDirection(receiver), receiver.glossExponent));
 }
 
+struct Candidate {
+    float key, importance;
+    std::uint32_t row;
+    std::uint32_t entry = 0;
+};
+
+// The most important ones, near to far, with their share.
+void choose(std::vector<Candidate>& all, std::size_t limit)
+{
+    float least = 0;
+    if (all.size() > limit) {
+        std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+            return a.importance > b.importance;
+        });
+        least = all[limit].importance;
+        all.resize(limit);
+    }
+    for (Candidate& c : all)
+        c.entry = listEntry(c.row, entityShare(c.importance, least));
+    std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+        return std::pair(a.key, a.row) < std::pair(b.key, b.row);
+    });
+}
+
 // The lists of pass entity_sort for one cluster.
 ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
                              std::uint32_t clusterIndex, const ClusterSphere& s,
@@ -187,7 +217,7 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
 {
     const SceneCluster& cluster = scene.clusters[clusterIndex];
     const float cutoff = scene.bounds[cluster.bounds].vertices.w;
-    std::vector<std::pair<float, std::uint32_t>> occluders, lights;
+    std::vector<Candidate> occluders, lights;
     for (std::uint32_t i = 0; i < rows.instances.size(); ++i) {
         const GpuInstance& g = rows.instances[i];
         const vec3 to = vec3(g.sphere) - s.center;
@@ -196,33 +226,37 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
         if ((culls & kCullHorizon) != 0 &&
             belowHorizon(to, g.sphere.w, s.vertexAxis, cutoff, s.radius))
             continue;
-        const bool light = i >= scene.instances.size();
-        if (light ? static_cast<std::uint32_t>(g.material1.z) != cluster.instance + 1
-                  : i != cluster.instance)
-            (light ? lights : occluders).emplace_back(powerDistance(g.sphere, s.center), i);
+        const float key = powerDistance(g.sphere, s.center);
+        const float importance =
+            entityImportance(to, g.sphere.w, g.grid.w, s.vertexAxis, cutoff, s.radius);
+        if (i < scene.instances.size()) {
+            if (i != cluster.instance)
+                occluders.push_back({key, importance, i});
+        } else if (static_cast<std::uint32_t>(g.material1.z) != cluster.instance + 1) {
+            lights.push_back({key, importance * dot(vec3(g.material), vec3(1)), i});
+        }
     }
-    std::sort(occluders.begin(), occluders.end());
-    std::sort(lights.begin(), lights.end());
-    occluders.resize(std::min<std::size_t>(occluders.size(), kMaxClusterOccluders));
-    lights.resize(std::min<std::size_t>(lights.size(), kMaxClusterLights));
+    choose(occluders, kMaxClusterOccluders);
+    choose(lights, kMaxClusterLights);
 
     ClusterEntities out{clusterIndex, {}, std::vector<ClusterLight>(lights.size())};
-    for (const auto& [power, row] : occluders)
-        out.occluders.push_back(row);
+    for (const Candidate& occluder : occluders)
+        out.occluders.push_back(occluder.entry);
     auto before = static_cast<std::uint32_t>(occluders.size());
     for (std::size_t l = lights.size(); l-- > 0;) {
-        const GpuInstance& g = rows.instances[lights[l].second];
+        const GpuInstance& g = rows.instances[lights[l].row];
         std::uint32_t certain = 0, possible = 0;
         for (std::uint32_t i = 0; i < occluders.size(); ++i) {
-            const bool own = out.occluders[i] + 1 == static_cast<std::uint32_t>(g.material1.z);
-            const float weight = own ? 0
-                                     : orderWeightAround(rows.instances[out.occluders[i]].sphere,
-                                                         g.sphere, s.center, s.radius);
+            const std::uint32_t row = occluders[i].row;
+            const bool own = row + 1 == static_cast<std::uint32_t>(g.material1.z);
+            const float weight =
+                own ? 0
+                    : orderWeightAround(rows.instances[row].sphere, g.sphere, s.center, s.radius);
             possible |= weight > 0 ? 1u << i : 0u;
             certain += certain == i && weight == 1 ? 1u : 0u;
         }
         before = std::min(before, certain);
-        out.lights[l] = {lights[l].second, before, before < 32 ? possible >> before << before : 0u};
+        out.lights[l] = {lights[l].entry, before, before < 32 ? possible >> before << before : 0u};
     }
     return out;
 }

@@ -11,14 +11,14 @@ namespace penumbra {
 
 // A local light of a cluster, as kListLights of shaders/shared/instance.h describes it.
 struct ClusterLight {
-    std::uint32_t row = 0, before = 0, possible = 0;
+    std::uint32_t entry = 0, before = 0, possible = 0;
     bool operator==(const ClusterLight&) const = default;
 };
 
 // One visible cluster with its occluders and lights, near to far.
 struct ClusterEntities {
     std::uint32_t cluster = 0;
-    std::vector<std::uint32_t> occluders; // rows
+    std::vector<std::uint32_t> occluders; // listEntry() of shaders/shared/instance.h
     std::vector<ClusterLight> lights;
 };
 

@@ -160,6 +160,15 @@ TEST_F(FrameTest, ExactEqualsTwin)
 }
 
 // Every test is conservative: without it there is more to do, and the same to see.
+// A share may round to the other 1/255.
+TEST_F(FrameTest, FullListsEqualTwin)
+{
+    const TestScene crowd = makeCrowdedTestScene();
+    EXPECT_GT(draw(crowd, Kernel::Exact).cull.dropped, 200u);
+    expectTwin(crowd, Kernel::Exact, 3e-3, true);
+    expectTwin(crowd, Kernel::Literal, 3e-3, true);
+}
+
 TEST_F(FrameTest, CullingChangesNothingInThePicture)
 {
     const Drawn culled = draw(litScene(), Kernel::Exact);

@@ -143,11 +143,12 @@ TEST(Invariance, TheOrderOfTwoDisjointOccludersHardlyMatters)
     sky[1] = sky[2] = sky[3] = vec3(0.8f);
     const FrameConstants frame = frameConstants({}, sky, 1);
     const CpuInstances rows = updateInstances(scene);
+    const std::uint32_t first = listEntry(1, 1), second = listEntry(2, 1);
     for (const Kernel kernel : kKernels) {
         std::vector<vec4> near(scene.radianceCount), far(scene.radianceCount);
         for (std::uint32_t c = 0; scene.clusters[c].instance == 0; ++c) {
-            combineCluster(kernel, scene, rows, frame, {c, {1, 2}, {}}, near);
-            combineCluster(kernel, scene, rows, frame, {c, {2, 1}, {}}, far);
+            combineCluster(kernel, scene, rows, frame, {c, {first, second}, {}}, near);
+            combineCluster(kernel, scene, rows, frame, {c, {second, first}, {}}, far);
         }
         near.resize(scene.firstRadiance[1]);
         far.resize(scene.firstRadiance[1]);
@@ -245,6 +246,78 @@ TEST_P(FlyingLight, FliesThroughTheObjectWithoutAJump)
 {
     EXPECT_LT(largestStep(vec3(0.5f, 0.45f, 0), vec3(-0.5f, 0.45f, 0)), 0.02);
 }
+
+// More entities than a cluster's list holds, over a floor that is one cluster on top: one of them
+// comes in from afar, step by step of a millimetre, and takes another one's place.
+class Crowd : public ::testing::TestWithParam<Kernel> {
+protected:
+    static constexpr float kFrom = 1.1f, kTo = 0.5f; // of the one that moves, from the middle
+
+    // Largest change of a receiver within a step, over the brightest receiver. place(at, instances,
+    // lights, sky) fills the scene, with one entity at `at`.
+    template <class Place>
+    double largestStep(const std::vector<MeshAsset>& assets, const Place& place)
+    {
+        constexpr int kSteps = 600;
+        double largest = 0;
+        std::vector<vec4> last;
+        for (int i = 0; i <= kSteps; ++i) {
+            const float distance = kFrom + (kTo - kFrom) * static_cast<float>(i) / kSteps;
+            std::vector<SceneInstance> instances = {{.mesh = 0, .position = vec3(0, -0.05f, 0)}};
+            std::vector<SceneLight> lights;
+            LightSh sky{};
+            place(vec3(distance, 0.12f, 0.02f), instances, lights, sky);
+            const SceneData scene = build(assets, instances, lights);
+            std::vector<vec4> now = shadeAll(GetParam(), scene, frameConstants({}, sky, 1));
+            now.resize(scene.firstRadiance[1]); // the floor
+            if (!last.empty())
+                largest =
+                    std::max(largest, changeOf(now, last).largest / range(now, now.size()).second);
+            last = std::move(now);
+        }
+        return largest;
+    }
+    // Where the others lie: a spiral, so that no two are equally far away.
+    static vec3 spiral(int i)
+    {
+        const float angle = 2.4f * static_cast<float>(i),
+                    radius = 0.3f + 0.015f * static_cast<float>(i);
+        return vec3(radius * std::cos(angle), 0.12f, radius * std::sin(angle));
+    }
+};
+
+TEST_P(Crowd, OccludersTakePlacesWithoutAJump)
+{
+    const std::vector<MeshAsset> assets = {makeBoxAsset(vec3(1, 0.05f, 1), 4, false),
+                                           makeSphereAsset(0.1f, 8)};
+    const double step = largestStep(assets, [](vec3 moving, auto& instances, auto&, LightSh& sky) {
+        sky = uniformLight(1);
+        instances.push_back({.mesh = 1, .position = moving, .occluder = 1});
+        for (int i = 0; i < 40; ++i)
+            instances.push_back({.mesh = 1, .position = spiral(i), .occluder = 1});
+    });
+    EXPECT_LT(step, 0.01);
+    RecordProperty("step", std::to_string(step));
+}
+
+TEST_P(Crowd, LightsTakePlacesWithoutAJump)
+{
+    const std::vector<MeshAsset> assets = {makeBoxAsset(vec3(1, 0.05f, 1), 4, false),
+                                           makeSphereAsset(0.1f, 8),
+                                           makeSphereLight(0.1f, vec3(10))};
+    const double step =
+        largestStep(assets, [](vec3 moving, auto& instances, auto& lights, LightSh&) {
+            instances.push_back({.mesh = 1, .position = vec3(0, 3, 0)});
+            lights.push_back({.asset = 2, .position = moving});
+            for (int i = 0; i < 24; ++i)
+                lights.push_back({.asset = 2, .position = spiral(i)});
+        });
+    EXPECT_LT(step, 0.03);
+    RecordProperty("step", std::to_string(step));
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, Crowd, ::testing::ValuesIn(kKernels),
+                         [](const auto& test) { return std::string(kernelName(test.param)); });
 
 INSTANTIATE_TEST_SUITE_P(Kernels, FlyingLight, ::testing::ValuesIn(kKernels),
                          [](const auto& test) { return std::string(kernelName(test.param)); });

@@ -135,7 +135,8 @@ MeshAsset makeRectangleLight(vec2 size, vec3 radiance)
 
 namespace {
 
-TestScene makeScene(bool lit)
+// `crowd`: small spheres, and half as many lights, among the objects.
+TestScene makeScene(bool lit, int crowd = 0)
 {
     TestScene scene;
     scene.assets.push_back(makeSphereAsset(0.5f, 16));
@@ -190,6 +191,14 @@ TestScene makeScene(bool lit)
                              .material = {vec3(0.5f), 0, 0},
                              .emission = vec3(1)});
     }
+    for (int i = 0; i < crowd; ++i) {
+        const float angle = 2.4f * static_cast<float>(i),
+                    radius = 0.4f + 0.04f * static_cast<float>(i);
+        const vec3 at(radius * std::cos(angle), 0.3f, radius * std::sin(angle));
+        instances.push_back({.mesh = 0, .position = at, .scale = 0.2f, .occluder = 0});
+        if (i % 2 == 0)
+            lights.push_back({.asset = 3, .position = at + vec3(0, 0.4f, 0), .scale = 0.3f});
+    }
     std::vector<const MeshAsset*> meshes;
     for (const MeshAsset& mesh : scene.assets)
         meshes.push_back(&mesh);
@@ -210,6 +219,11 @@ TestScene makeTestScene()
 TestScene makeLitTestScene()
 {
     return makeScene(true);
+}
+
+TestScene makeCrowdedTestScene()
+{
+    return makeScene(true, 48);
 }
 
 std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants)

@@ -34,6 +34,9 @@ TestScene makeTestScene();
 // rectangle with a surface of its own.
 TestScene makeLitTestScene();
 
+// More of both than the lists of a cluster hold.
+TestScene makeCrowdedTestScene();
+
 // Radiance of every receiver by the CPU twin, whatever the camera sees: [radianceCount].
 std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants);
 
