@@ -67,8 +67,6 @@ FrameConstants Renderer::constants(const View& view) const
 
 Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool combine)
 {
-    if (kernel != m_kernel)
-        m_scene.touchAll(); // each kernel has constants of its own
     m_kernel = kernel;
     Result<GpuFrame> frame = m_ring.beginFrame();
     if (frame)

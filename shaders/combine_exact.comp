@@ -9,8 +9,9 @@
 // The nodes lie fixed in the receiver's object, so a scene that is turned as a whole looks the same.
 // Source: Zhou et al. 2005, Fig. 5; the fast way is findings section 1, kernel J.
 // Differs: products at quadrature nodes instead of tripling coefficients, so a chain keeps more than order 4 and is
-// commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster; an occluder
-// comes before a light by a weight, not by a yes or no (shaders/shared/order.h).
+// commutative; tetrahedral instead of trilinear sampling with weights of 1/256; entities sorted per cluster, those
+// at the edge of a full list in part; an occluder comes before a light by a weight, not by a yes or no
+// (shaders/shared/order.h).
 //   reads   visible, clusters, lists, instances, fields, receivers, skyNodes, skyLobes
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require
@@ -92,7 +93,7 @@ void occlude(uint entry)
 }
 
 // `possible`: occluders that `visibility` has not got yet and that may stand before the light, as bits.
-vec3 localLight(GpuInstance light, float share, uint possible, uint v)
+vec3 localLight(GpuInstance light, FieldEntity field, float share, uint possible, uint v)
 {
     ShNodal through = visibility[v];
     for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
@@ -103,7 +104,7 @@ vec3 localLight(GpuInstance light, float share, uint possible, uint v)
         through = shMultiply(through, occlusion(instanceFieldIn(axes, occluder), receiver[v].position, weight));
     }
     return share * risen(light.sphere, v) * light.material.rgb *
-           lightThrough(transferNodal(through, inObject(v)), instanceFieldIn(axes, light), receiver[v]);
+           lightThrough(transferNodal(through, inObject(v)), field, receiver[v]);
 }
 
 vec4 lobeTexel(uint at) { return texelFetch(skyLobeTexels, int(at)); }
@@ -143,7 +144,7 @@ void main()
 
     const GpuInstance self = loadInstance(cluster.instance);
     axes = objectFromWorld(self);
-    firstSkyNode = 32u * cluster.instance;
+    firstSkyNode = kSkyNodes * cluster.instance;
     vec3 sum[kReceivers];
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
@@ -161,8 +162,9 @@ void main()
                 occlude(listed(kListOccluders + next));
             const uint entry = listed(at), possible = listed(at + 2u);
             const GpuInstance light = loadInstance(entryRow(entry));
+            const FieldEntity field = instanceFieldIn(axes, light);
             [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-                sum[v] += localLight(light, entryShare(entry), possible, v);
+                sum[v] += localLight(light, field, entryShare(entry), possible, v);
         }
     }
     for (; next < occluders; ++next)

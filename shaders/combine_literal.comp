@@ -5,8 +5,8 @@
 //   local light: B += DoubleProduct(S, T'), T' of the occluders that stand before the light
 //   environment: B += DoubleProduct(L, T)
 // Source: Zhou et al. 2005 Fig. 5; Tamura et al. 2006 Figs. 3, 4. Differs: fields are normalised by g(r) instead of a
-// minimum and a step per shell, entities are sorted per cluster, and an occluder comes before a light by a weight
-// (shaders/shared/order.h).
+// minimum and a step per shell, entities are sorted per cluster, those at the edge of a full list count in part, and an
+// occluder comes before a light by a weight (shaders/shared/order.h).
 //   reads   visible, clusters, lists, instances, denseRotations, fieldSamples, receivers
 //   writes  radiance [receiver] linear RGB in W/(m² sr), a = 1
 #extension GL_GOOGLE_include_directive : require

@@ -83,13 +83,14 @@ void main()
         const vec3 to = g.sphere.xyz - center;
         if (g.grid.w == 0.0 || length(to) - radius > g.grid.w)
             continue;
-        if ((frame.culls & kCullHorizon) != 0u && belowHorizon(to, g.sphere.w, axis, b.vertices.w, radius))
+        const float highest = highestOver(to, axis, b.vertices.w);
+        if ((frame.culls & kCullHorizon) != 0u && belowHorizon(highest, g.sphere.w, radius))
             continue;
         const float key = powerDistance(g.sphere, center);
-        const float importance = entityImportance(to, g.sphere.w, g.grid.w, axis, b.vertices.w, radius);
+        const float importance = entityImportance(to, highest, g.sphere.w, g.grid.w, radius);
         if (kLocalLights && i >= frame.instanceCount) {
             if (uint(int(g.material1.z)) != cluster.instance + 1u)
-                insert(lights, key, importance * dot(g.material.rgb, vec3(1.0)), i);
+                insert(lights, key, importance * lightStrength(g), i);
         } else if (i != cluster.instance) {
             insert(occluders, key, importance, i);
         }

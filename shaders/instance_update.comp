@@ -19,12 +19,13 @@ void main()
     if (frame.denseRotations != 0u)
         denseRotations[i] = denseRotation(instanceRotation(g));
     const mat3 worldFromObject = rotationMatrix(instance.rotation);
-    const uint nodes = frame.denseRotations == 0u && i < frame.instanceCount ? 32u : 0u;
+    // A bound instead of a branch: lavapipe runs branches that no lane takes.
+    const uint nodes = frame.denseRotations == 0u && i < frame.instanceCount ? kSkyNodes : 0u;
     for (uint n = 0u; n < nodes; ++n) {
         const Sh6 basis = shBasis6(worldFromObject * kShNodes[n].xyz);
         vec3 radiance = vec3(0.0);
-        [[unroll]] for (int k = 0; k < 36; ++k)
+        [[unroll]] for (uint k = 0u; k < kLightCoefficients; ++k)
             radiance += basis.c[k] * frame.light[k].rgb;
-        skyNodes[32u * i + n] = vec4(radiance * kShNodes[n].w, 0.0);
+        skyNodes[kSkyNodes * i + n] = vec4(radiance * kShNodes[n].w, 0.0);
     }
 }

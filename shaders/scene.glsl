@@ -23,8 +23,9 @@ layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[];
 layout(set = 0, binding = 17, scalar) buffer DenseRotations { DenseRotation denseRotations[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer FieldSamples { uvec4 fieldSamples[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Receivers { ReceiverTexels receivers[]; };
-layout(set = 0, binding = 28, scalar) writeonly buffer SkyNodes { vec4 skyNodes[]; }; // [instance][32]: the light at the
-layout(set = 0, binding = 29) uniform samplerBuffer skyNodeTexels; // nodes in the instance's axes, times their weights
+// [instance][kSkyNodes]: the light at the nodes, which lie in the instance's axes, times their weights.
+layout(set = 0, binding = 28, scalar) writeonly buffer SkyNodes { vec4 skyNodes[]; };
+layout(set = 0, binding = 29) uniform samplerBuffer skyNodeTexels;
 layout(set = 0, binding = 31) uniform samplerBuffer skyLobeTexels; // [kSkyLobeTexels]: shaders/shared/gloss.h
 
 GpuInstance loadInstance(uint instance)

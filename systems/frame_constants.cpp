@@ -141,20 +141,20 @@ FrameConstants frameConstants(const View& view, const LightSh& light, float back
     for (int i = 0; i < 6; ++i)
         frame.frustum[i] = planes[i] / length(vec3(planes[i]));
 
-    for (int k = 0; k < 36; ++k)
-        frame.light[k] = vec4(light[static_cast<std::size_t>(k)], 0);
+    for (std::size_t k = 0; k < light.size(); ++k)
+        frame.light[k] = vec4(light[k], 0);
     return frame;
 }
 
 SkyNodes skyNodes(const FrameConstants& frame, const mat3& worldFromObject)
 {
     SkyNodes nodes;
-    for (int n = 0; n < 32; ++n) {
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
         const Sh6 basis = shBasis6(worldFromObject * vec3(kShNodes[n]));
         vec3 radiance(0);
-        for (int k = 0; k < 36; ++k)
+        for (std::size_t k = 0; k < kLightCoefficients; ++k)
             radiance += basis.c[k] * vec3(frame.light[k]);
-        nodes[static_cast<std::size_t>(n)] = radiance * kShNodes[n].w;
+        nodes[n] = radiance * kShNodes[n].w;
     }
     return nodes;
 }

@@ -16,7 +16,7 @@ View viewOf(const Camera& camera, float aspect);
 
 // Radiance in SH of order 6, times an intensity. Kernel literal takes the first 16, the papers'
 // order 4; kernel exact all, at its nodes.
-using LightSh = std::array<vec3, 36>;
+using LightSh = std::array<vec3, kLightCoefficients>;
 LightSh environmentLight(const Environment& environment, float intensity);
 
 // The environment above solid, dark ground at y = 0: map and SH without the directions below the
@@ -36,7 +36,7 @@ FrameConstants frameConstants(const View& view, const LightSh& light,
 
 // Light of the frame at the nodes kShNodes, which lie in the axes of an object, times their
 // weights: what pass instance_update writes per instance.
-using SkyNodes = std::array<vec3, 32>;
+using SkyNodes = std::array<vec3, kSkyNodes>;
 SkyNodes skyNodes(const FrameConstants& frame, const mat3& worldFromObject);
 
 } // namespace penumbra

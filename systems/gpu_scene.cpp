@@ -137,11 +137,15 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
                                  "{}; use fewer instances or coarser meshes",
                                  clusters, kClusterReceivers, groups)};
 
-    constexpr std::size_t kMaxWhole = 1u << 24; // rows of instances hold these numbers as floats
+    // Rows of instances hold these numbers as floats, entries of lists in 24 bits.
+    constexpr std::size_t kMaxWhole = (1u << 24) - 1;
     if (data.fieldSamples.size() > kMaxWhole)
         return Error{fmt::format("the scene's fields have {} samples, at most {}; bake them with "
                                  "fewer shells or a smaller --max-side",
                                  data.fieldSamples.size(), kMaxWhole)};
+    if (rows > kMaxWhole)
+        return Error{
+            fmt::format("the scene has {} instances and lights, at most {}", rows, kMaxWhole)};
     if (data.firstDraw.back() > kMaxWhole)
         return Error{fmt::format("the scene takes {} draws, at most {}; use fewer instances or "
                                  "materials",
@@ -176,8 +180,8 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
         b.surfaceVertices = maker.with("surface vertices", data.surfaces.vertices,
                                        VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
     b.denseRotations = maker.empty("dense rotations", rows * sizeof(DenseRotation), kStorageUse);
-    b.skyNodes = maker.empty("light at nodes", data.instances.size() * 32 * sizeof(vec4), kTexelUse,
-                             VK_FORMAT_R32G32B32A32_SFLOAT);
+    b.skyNodes = maker.empty("light at nodes", data.instances.size() * kSkyNodes * sizeof(vec4),
+                             kTexelUse, VK_FORMAT_R32G32B32A32_SFLOAT);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
         GpuSceneSlot slot;
         slot.frame = maker.upload("frame constants", sizeof(FrameConstants),
@@ -210,7 +214,6 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
     }
     scene.m_isChanged.assign(rows, false);
     scene.m_data = std::move(data);
-    scene.touchAll();
     return scene;
 }
 
@@ -275,10 +278,18 @@ void GpuScene::touch(std::uint32_t row)
     m_isChanged[row] = true;
 }
 
-void GpuScene::touchAll()
+// What pass instance_update writes depends on the kernel and, for kernel exact, on the environment.
+void GpuScene::touchOutdated(const FrameConstants& frame)
 {
-    for (std::uint32_t row = 0; row < rowCount(m_data); ++row)
-        touch(row);
+    const bool relit = !std::equal(m_environment.begin(), m_environment.end(), frame.light);
+    if (m_denseRotations != frame.denseRotations)
+        for (std::uint32_t row = 0; row < rowCount(m_data); ++row)
+            touch(row);
+    else if (relit && frame.denseRotations == 0)
+        for (std::uint32_t row = 0; row < m_data.instances.size(); ++row)
+            touch(row);
+    m_denseRotations = frame.denseRotations;
+    std::copy(std::begin(frame.light), std::end(frame.light), m_environment.begin());
 }
 
 Result<void> GpuScene::setBackground(std::span<const SkyMap> skies)
@@ -304,10 +315,7 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
-    if (!std::equal(m_light.begin(), m_light.end(), std::begin(frame.light))) {
-        std::copy(std::begin(frame.light), std::end(frame.light), m_light.begin());
-        touchAll();
-    }
+    touchOutdated(frame);
     if (slot.skyLobesAt != m_skyLobesAt && mirrors())
         std::memcpy(slot.skyLobes.mapped, m_skyLobes.texels.data(),
                     m_skyLobes.texels.size() * sizeof(vec4));

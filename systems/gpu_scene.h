@@ -1,5 +1,5 @@
 // The GPU's copy of a scene: static arrays per asset, what the passes pass on, and the descriptor
-// set that all of them share (bindings: shaders/scene.glsl). The frame updates only instances that
+// set that all of them share (bindings: shaders/scene.glsl). The frame updates only what
 // changed.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include "systems/scene_data.h"
 #include "systems/sky_lobes.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -73,10 +74,6 @@ public:
     void writeSet(const Device& device, VkDescriptorSet set, std::uint32_t slot,
                   const ReceiverBuffers& receivers) const;
 
-    // All rows count as changed: after another kernel was chosen, which needs other constants.
-    // Another light does so too.
-    void touchAll();
-
     [[nodiscard]] const SceneData& data() const { return m_data; }
     [[nodiscard]] const GpuSceneBuffers& buffers() const { return m_buffers; }
     [[nodiscard]] const GpuSurfaces& surfaces() const { return m_surfaces; }
@@ -88,6 +85,7 @@ public:
 
 private:
     void touch(std::uint32_t row);
+    void touchOutdated(const FrameConstants& frame);
 
     SceneData m_data;
     GpuSceneBuffers m_buffers;
@@ -98,7 +96,8 @@ private:
     std::vector<std::uint32_t> m_changed; // rows to upload, each once
     std::vector<bool> m_isChanged;
     GpuSkies m_skies;
-    std::array<vec4, 36> m_light{}; // of the last frame
+    std::array<vec4, kLightCoefficients> m_environment{}; // FrameConstants::light of the last frame
+    std::uint32_t m_denseRotations = ~0u;                 // likewise; at first none
     SkyLobes m_skyLobes;
     std::uint64_t m_skyLobesAt = 0;
 };

@@ -163,7 +163,7 @@ Result<BuildOutcome> buildAssets(const Manifest& manifest, const fs::path& folde
         if (done[i] == 0)
             open.push_back(i);
     if (!open.empty())
-        nextFileTick(); // sources written just now count as unchanged since
+        waitForFileTick(); // sources written just now count as unchanged since
     observer.begin(open.size());
     buildOpen(manifest, build, open, observer, outcome.assets);
 

@@ -62,7 +62,7 @@ std::int64_t fileClock()
     return nanoseconds(now);
 }
 
-std::int64_t nextFileTick()
+std::int64_t waitForFileTick()
 {
     timespec begin{}; // files may be stamped by this clock, which runs ahead of fileClock
     ::clock_gettime(CLOCK_REALTIME, &begin);

@@ -27,7 +27,7 @@ std::int64_t fileClock();
 
 // Waits, some milliseconds, for a tick of that clock after which whatever was changed before the
 // call has `changed` below it, and returns it.
-std::int64_t nextFileTick();
+std::int64_t waitForFileTick();
 
 struct Fingerprint {
     FileStamp stamp;

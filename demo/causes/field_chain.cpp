@@ -77,7 +77,7 @@ public:
         const Sh4 own = m_objects.at({chosen.instance, m_in.data.instances[chosen.instance].mesh})
                             .above(origin, receiver.normal, m_points, shift);
         std::vector<Sh4> traced, plain, rounded; // [occluder] visibility, world
-        std::vector<float> risen;
+        std::vector<float> weights;
         for (const std::uint32_t entry : chosen.cluster->occluders) {
             const std::uint32_t row = entryRow(entry);
             const GpuInstance& g = m_in.rows.instances[row];
@@ -92,19 +92,19 @@ public:
             };
             plain.push_back(world(nodes.plain));
             rounded.push_back(world(nodes.rounded));
-            risen.push_back(entryShare(entry) * horizonWeight(receiver.normal,
-                                                              vec3(g.sphere) - receiver.position,
-                                                              g.sphere.w));
+            weights.push_back(entryShare(entry) * horizonWeight(receiver.normal,
+                                                                vec3(g.sphere) - receiver.position,
+                                                                g.sphere.w));
         }
         const Sh4 ownRounded = roundedOwn(own, worldFromObject);
 
         Steps steps{};
         integrate(chosen, receiver, origin, own, traced, shift, steps);
         const mat3 axes = objectFromWorld(self);
-        steps[2] = product(receiver, axes, own, traced, risen, m_order4);
-        steps[3] = product(receiver, axes, own, plain, risen, m_order4);
-        steps[4] = product(receiver, axes, ownRounded, rounded, risen, m_order4);
-        steps[5] = product(receiver, axes, ownRounded, rounded, risen, m_in.constants);
+        steps[2] = product(receiver, axes, own, traced, weights, m_order4);
+        steps[3] = product(receiver, axes, own, plain, weights, m_order4);
+        steps[4] = product(receiver, axes, ownRounded, rounded, weights, m_order4);
+        steps[5] = product(receiver, axes, ownRounded, rounded, weights, m_in.constants);
         const vec3 albedo(self.material);
         for (vec3& step : steps)
             step *= albedo;

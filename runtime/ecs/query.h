@@ -92,6 +92,9 @@ public:
     void parallelEachSegment(F&& f) const;
     // 16 KiB take about as long to walk as handing a task to another thread.
     static constexpr uint32_t kInlineSegments = 4;
+    // Of a block, whose changed rows are listed at once; that one task takes at most.
+    static constexpr uint32_t kListedSegments = 8, kTaskSegments = 8;
+    static_assert(kBlockSegments % kListedSegments == 0 && kBlockSegments % kTaskSegments == 0);
 
     // f(first, arguments…, parent) for each row that is part of the hierarchy, parents before their
     // children: `parent` is the parent's value of the first term, const, null if there is none.
@@ -167,8 +170,7 @@ private:
     template <class F>
     void callAll(F& f, const Match& match) const; // all rows of any match, marked
     template <class F>
-    void callMarked(F& f, const Run& run) const;   // marks, then callRun
-    static constexpr uint32_t kListedSegments = 8; // whose changed rows are listed at once
+    void callMarked(F& f, const Run& run) const; // marks, then callRun
     template <class F>
     void callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const;
     template <class F>

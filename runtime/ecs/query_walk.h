@@ -117,7 +117,7 @@ void Query<Terms...>::parallelEach(F&& f) const
             uint32_t count;
         };
         const IterationGuard guard(*m_iterating);
-        const uint32_t most = std::min(segmentCount() / 64 + 1, kBlockSegments);
+        const uint32_t most = std::min(segmentCount() / 64 + 1, kTaskSegments);
         std::vector<Task> tasks;
         for (const Match& match : m_cache->matches())
             for (uint32_t s = 0; s < match.archetype->segmentCount(); s += tasks.back().count)

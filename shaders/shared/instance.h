@@ -93,7 +93,9 @@ PENUMBRA_CONST uint kCullBackfaces = 2u; // clusters that look away from the eye
 PENUMBRA_CONST uint kCullHorizon = 4u;   // entities under the horizon of a whole cluster
 PENUMBRA_CONST uint kCullAll = 7u;
 
-PENUMBRA_CONST uint kSkyMaps = 2u; // environment maps drawn at once, for a cross-fade
+PENUMBRA_CONST uint kLightCoefficients = 36u; // order 6
+PENUMBRA_CONST uint kSkyNodes = 32u;          // of kShNodes
+PENUMBRA_CONST uint kSkyMaps = 2u;            // environment maps drawn at once, for a cross-fade
 
 // Header that passes cluster_cull and entity_sort fill for the passes after them.
 struct CullResult {
@@ -108,10 +110,10 @@ struct CullResult {
 struct FrameConstants {
     mat4 clipFromWorld;
     mat4 worldFromClip;
-    vec4 eye;                   // world; w unused
-    vec4 frustum[6];            // planes, normals inwards, world
-    vec4 light[36];             // environment radiance in SH of order 6
-    vec4 skyRotation[kSkyMaps]; // quaternion x, y, z, w: map from world
+    vec4 eye;                       // world; w unused
+    vec4 frustum[6];                // planes, normals inwards, world
+    vec4 light[kLightCoefficients]; // environment radiance in SH of order 6
+    vec4 skyRotation[kSkyMaps];     // quaternion x, y, z, w: map from world
     uint clusterCount;
     uint instanceCount; // the rows of lights follow those of instances
     uint lightCount;
@@ -154,6 +156,12 @@ PENUMBRA_FN uint entryRow(uint entry)
 PENUMBRA_FN float entryShare(uint entry)
 {
     return float(entry >> 24u) * (1.0f / 255.0f);
+}
+
+// Of a light: how bright its field is, about, compared with that of others.
+PENUMBRA_FN float lightStrength(GpuInstance g)
+{
+    return g.bandScale.x * (g.material.x + g.material.y + g.material.z);
 }
 
 PENUMBRA_FN vec3 rotate(vec4 q, vec3 v)

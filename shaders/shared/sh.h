@@ -2,6 +2,7 @@
 // Condon-Shortley phase. Axes as everywhere in the project: x, y, z of the space at hand, polar
 // axis z.
 //   Sh4       coefficients of a function on the sphere
+//   Sh6       the same of order 6: bands 0..5, 36 coefficients
 //   ShNodal   its values at the 32 nodes kShNodes of a quadrature rule of degree 9. The rule
 //   integrates products of three
 //             order-4 functions exactly, so a product of two in nodal form, projected back, equals

@@ -19,8 +19,8 @@ struct ReceiverTexels {
 
 struct Receiver {
     vec3 position; // world, metres
-    vec3 normal;   // world, unit
-    vec3 mirror;   // world, unit: the view direction mirrored at the normal
+    vec3 normal;   // unit; world, or the frame of turnReceiver
+    vec3 mirror;   // likewise: the view direction mirrored at the normal
     float glossFraction;
     float glossExponent;
 };

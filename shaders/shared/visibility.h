@@ -34,23 +34,23 @@ PENUMBRA_FN float highestOver(vec3 to, vec3 axis, float cutoff)
                : along * cutoff + across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
 }
 
-// A sphere lies under the horizon of every receiver of a cluster: to = its centre - the cluster's
-// centre.
-PENUMBRA_FN bool belowHorizon(vec3 to, float sphereRadius, vec3 axis, float cutoff, float radius)
+// A sphere lies under the horizon of every receiver of a cluster: highest = highestOver of its
+// centre, radius = the cluster's.
+PENUMBRA_FN bool belowHorizon(float highest, float sphereRadius, float radius)
 {
-    return highestOver(to, axis, cutoff) < -(radius + sphereRadius);
+    return highest < -(radius + sphereRadius);
 }
 
 // How much an entity can matter to a cluster: its solid angle, about, and 0 from where it is out of
 // influence or under the horizon of every receiver. It changes smoothly where the entity moves.
-PENUMBRA_FN float entityImportance(vec3 to, float sphereRadius, float influence, vec3 axis,
-                                   float cutoff, float radius)
+// highest = highestOver(to, ...), radius = the cluster's.
+PENUMBRA_FN float entityImportance(vec3 to, float highest, float sphereRadius, float influence,
+                                   float radius)
 {
     const float within = clamp(1.0f - (length(to) - radius) / influence, 0.0f, 1.0f);
-    const float risen =
-        clamp(1.0f + highestOver(to, axis, cutoff) / (radius + sphereRadius), 0.0f, 1.0f);
+    const float risen = clamp(1.0f + highest / (radius + sphereRadius), 0.0f, 1.0f);
     const float square = sphereRadius * sphereRadius;
-    return within * risen * square / (square + dot(to, to));
+    return within * risen * square / max(square + dot(to, to), 1e-30f);
 }
 
 // What of an entity counts, beside those of a full list: `least` is the importance of the most

@@ -93,12 +93,12 @@ struct ExactProduct {
     const SceneData& scene;
     const CpuInstances& rows;
     Receiver receiver;
-    const mat3& objectFromWorld;
+    const mat3& axes; // object from world
     vec3 position = receiver.position, normal = receiver.normal;
 
     [[nodiscard]] ShNodal occlude(const ShNodal& before, std::uint32_t row, float weight) const
     {
-        const FieldEntity entity = instanceFieldIn(objectFromWorld, rows.instances[row]);
+        const FieldEntity entity = instanceFieldIn(axes, rows.instances[row]);
         const FieldCell cell = fieldCell(fieldPoint(entity, position), entity.grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, entity.grid);
         const Sh4 visibility =
@@ -109,8 +109,8 @@ struct ExactProduct {
 
     [[nodiscard]] vec3 lightThrough(const ShNodal& through, std::uint32_t row) const
     {
-        const ShNodal transfer = transferNodal(through, turnReceiver(objectFromWorld, receiver));
-        const FieldEntity light = instanceFieldIn(objectFromWorld, rows.instances[row]);
+        const ShNodal transfer = transferNodal(through, turnReceiver(axes, receiver));
+        const FieldEntity light = instanceFieldIn(axes, rows.instances[row]);
         const FieldGrid& grid = light.grid;
         const FieldCell cell = fieldCell(fieldPoint(light, position), grid);
         const FieldTetrahedron t = fieldTetrahedron(cell.fraction, grid);
@@ -223,17 +223,16 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
         const vec3 to = vec3(g.sphere) - s.center;
         if (g.grid.w == 0 || length(to) - s.radius > g.grid.w)
             continue;
-        if ((culls & kCullHorizon) != 0 &&
-            belowHorizon(to, g.sphere.w, s.vertexAxis, cutoff, s.radius))
+        const float highest = highestOver(to, s.vertexAxis, cutoff);
+        if ((culls & kCullHorizon) != 0 && belowHorizon(highest, g.sphere.w, s.radius))
             continue;
         const float key = powerDistance(g.sphere, s.center);
-        const float importance =
-            entityImportance(to, g.sphere.w, g.grid.w, s.vertexAxis, cutoff, s.radius);
+        const float importance = entityImportance(to, highest, g.sphere.w, g.grid.w, s.radius);
         if (i < scene.instances.size()) {
             if (i != cluster.instance)
                 occluders.push_back({key, importance, i});
         } else if (static_cast<std::uint32_t>(g.material1.z) != cluster.instance + 1) {
-            lights.push_back({key, importance * dot(vec3(g.material), vec3(1)), i});
+            lights.push_back({key, importance * lightStrength(g), i});
         }
     }
     choose(occluders, kMaxClusterOccluders);
@@ -304,7 +303,8 @@ void combineCluster(Kernel kernel, const SceneData& scene, const CpuInstances& i
     const SceneCluster& cluster = scene.clusters[entities.cluster];
     const GpuInstance& self = instances.instances[cluster.instance];
     const mat3 axes = objectFromWorld(self);
-    const SkyNodes light = skyNodes(frame, glm::transpose(axes));
+    const SkyNodes light =
+        kernel == Kernel::Exact ? skyNodes(frame, glm::transpose(axes)) : SkyNodes{};
     for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
         const ReceiverTexels& texels = scene.receivers[cluster.firstReceiver + v];
         const Receiver receiver = makeReceiver(self, texels.geometry, vec3(frame.eye));

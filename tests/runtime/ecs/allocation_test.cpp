@@ -113,7 +113,7 @@ TEST(Allocation, EveryFailureLeavesTheWorldAsItWas)
             {"destroyMany", [](Scene& s, auto) { s.world.destroyMany(s.entities); }},
         };
     uint32_t allFailures = 0;
-    for (const uint32_t n : {16u, 42u, 170u, 682u, 4096u}) // around full blocks, and others
+    for (const uint32_t n : {16u, 42u, 170u, 682u, 2048u, 16384u}) // around full blocks, and others
         for (const auto& [name, change] : changes) {
             { // components register once
                 Scene scene(n);

@@ -130,7 +130,7 @@ TEST(Archetype, LayoutTellsWhetherColumnsMoved)
     EXPECT_EQ(archetype.layout(), 0u);
     uint32_t layout = 0, blocks = 0;
     const std::byte* first = nullptr;
-    for (uint32_t i = 0; i < 30000; ++i) {
+    for (uint32_t i = 0; i < 70000; ++i) {
         const Entity entity{i, 1};
         archetype.append({&entity, 1}, {1, 0});
         const bool moved = archetype.columnsAt(0)[0] != first;

@@ -209,7 +209,7 @@ TEST(Enable, FlagsStayWithTheirEntities)
     World world;
     Enabled model(&before);
     std::mt19937 random(11);
-    std::vector<Entity> pool(3000);
+    std::vector<Entity> pool(9000);
     world.createMany(pool, Wide{}, Health{}, Velocity{}); // segments of few rows
     for (const Entity entity : pool)
         model[entity] = true;
@@ -219,7 +219,7 @@ TEST(Enable, FlagsStayWithTheirEntities)
         const Entity entity = pool[at];
         switch (random() % 10) {
         case 0:
-            if (pool.size() < 1500)
+            if (pool.size() < 8500)
                 break;
             world.destroy(entity);
             model.erase(entity);

@@ -69,7 +69,7 @@ TEST_F(Lifetime, FollowsRowsThroughGrowthRemovalAndTheWorldsEnd)
 {
     World world;
     std::vector<Entity> entities;
-    for (uint32_t i = 0; i < 10000; ++i) // through all block sizes
+    for (uint32_t i = 0; i < 40000; ++i) // through all block sizes
         entities.push_back(world.create(Tracked(i), Position{}));
     expectTexts(world, entities);
     for (uint32_t i = 0; i < 5000; ++i) { // the last row takes the gap

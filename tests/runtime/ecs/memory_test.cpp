@@ -30,7 +30,7 @@ TEST(Memory, TwentyBytesPerEntityBesideTheValues)
     for (size_t i = 0; i < kCount; i += 2)
         bulk.destroy(entities[i]);
     bulk.trim();
-    EXPECT_LE(bulk.statistics().blockBytes, kCount / 2 * (12 + 12 + 4 + 1) + 200 * 1024);
+    EXPECT_LE(bulk.statistics().blockBytes, kCount / 2 * (12 + 12 + 4) + 512 * 1024);
 }
 
 TEST(Memory, AnAlmostEmptyWorldIsSmall)

@@ -51,7 +51,7 @@ TEST(Query, SeesArchetypesMadeLater)
 TEST(Query, WritesThroughLanes)
 {
     World world;
-    std::vector<Entity> entities(10000);
+    std::vector<Entity> entities(40000); // several blocks
     world.createMany(entities, Position{1, 2, 3}, Velocity{0, 0, 0});
     world.query<Velocity, const Position>().each([](Entity entity, Velocity& v, const Position& p) {
         v = {p.x + static_cast<float>(entity.index), p.y, p.z};
@@ -68,7 +68,7 @@ TEST(Query, WritesThroughLanes)
 TEST(Query, SegmentsCoverEachRowOnce)
 {
     World world;
-    std::vector<Entity> entities(10000);
+    std::vector<Entity> entities(40000); // several blocks
     world.createMany(entities, Position{}, Velocity{1, 2, 3});
     world.create(Position{}, Velocity{1, 2, 3}, Frozen{});
 

@@ -159,16 +159,85 @@ TEST_F(FrameTest, ExactEqualsTwin)
     expectTwin(litScene(), Kernel::Exact, 3e-3, true);
 }
 
-// Every test is conservative: without it there is more to do, and the same to see.
-// A share may round to the other 1/255.
+// A share may round to the other 1/255, and among entities without a share the choice is free.
 TEST_F(FrameTest, FullListsEqualTwin)
 {
     const TestScene crowd = makeCrowdedTestScene();
-    EXPECT_GT(draw(crowd, Kernel::Exact).cull.dropped, 200u);
+    const Drawn drawn = draw(crowd, Kernel::Exact);
+    EXPECT_GT(drawn.cull.dropped, 200u);
+    std::map<std::uint32_t, const std::uint32_t*> lists; // by cluster
+    for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
+        lists[drawn.visible[slot]] = &drawn.lists[slot * kListStride];
+    std::uint32_t fullOfOccluders = 0, fullOfLights = 0, partial = 0;
+    const auto counting = [](const std::uint32_t* entries, std::uint32_t count,
+                             std::uint32_t stride) {
+        std::map<std::uint32_t, float> shares; // by row
+        for (std::uint32_t i = 0; i < count; ++i)
+            if (entryShare(entries[i * stride]) > 0.005f)
+                shares[entryRow(entries[i * stride])] = entryShare(entries[i * stride]);
+        return shares;
+    };
+    const auto expectEqual = [&](const auto& gpu, const auto& cpu) {
+        ASSERT_EQ(gpu.size(), cpu.size());
+        for (const auto& [row, share] : cpu) {
+            ASSERT_TRUE(gpu.contains(row));
+            EXPECT_NEAR(gpu.at(row), share, 1.01f / 255);
+            partial += share < 1;
+        }
+    };
+    for (const ClusterEntities& cluster :
+         cullAndSort(crowd.data, updateInstances(crowd.data), crowd.constants)) {
+        const std::uint32_t* const list = lists.at(cluster.cluster);
+        ASSERT_EQ(list[0], cluster.occluders.size());
+        ASSERT_EQ(list[1], cluster.lights.size());
+        std::vector<std::uint32_t> lights;
+        for (const ClusterLight& light : cluster.lights)
+            lights.push_back(light.entry);
+        expectEqual(counting(list + kListOccluders, list[0], 1),
+                    counting(cluster.occluders.data(), list[0], 1));
+        expectEqual(counting(list + kListLights, list[1], 3), counting(lights.data(), list[1], 1));
+        fullOfOccluders += list[0] == kMaxClusterOccluders;
+        fullOfLights += list[1] == kMaxClusterLights;
+    }
+    EXPECT_GT(fullOfOccluders, 10u);
+    EXPECT_GT(fullOfLights, 10u);
+    EXPECT_GT(partial, 10u);
     expectTwin(crowd, Kernel::Exact, 3e-3, true);
     expectTwin(crowd, Kernel::Literal, 3e-3, true);
 }
 
+// Each kernel has constants of its own, and what kernel exact has of the light follows it.
+TEST_F(FrameTest, KernelsAndLightChangeFromFrameToFrame)
+{
+    const FramePasses passes = take(createFramePasses(device(), false));
+    FrameTargets targets = take(createFrameTargets(device(), passes, {64, 48}));
+    GpuScene gpu = take(GpuScene::create(device(), scene().data, scene().environment, 2));
+    FrameRing ring(device());
+    FrameConstants dark = scene().constants;
+    for (vec4& coefficient : dark.light)
+        coefficient *= 0.5f;
+    const auto radiance = [&](Kernel kernel, const FrameConstants& constants) {
+        const GpuFrame frame = take(ring.beginFrame());
+        recordFrame(frame, passes, gpu, constants, {kernel, true, 1}, targets);
+        take(ring.endFrame());
+        take(ring.waitIdle());
+        return take(readBackAs<vec4>(device(), gpu.buffers().radiance));
+    };
+    const auto bright = radiance(Kernel::Exact, scene().constants);
+    const auto half = radiance(Kernel::Exact, dark);
+    const auto literal = radiance(Kernel::Literal, scene().constants);
+    EXPECT_EQ(radiance(Kernel::Exact, scene().constants), bright);
+    EXPECT_EQ(radiance(Kernel::Literal, scene().constants), literal);
+    EXPECT_NE(literal, bright);
+    float brightest = 0;
+    for (std::size_t i = 0; i < bright.size(); ++i) {
+        EXPECT_NEAR(half[i].x, 0.5f * bright[i].x, 1e-5f);
+        brightest = std::max(brightest, bright[i].x);
+    }
+    EXPECT_GT(brightest, 0.1f);
+}
+
+// Every test is conservative: without it there is more to do, and the same to see.
 TEST_F(FrameTest, CullingChangesNothingInThePicture)
 {
     const Drawn culled = draw(litScene(), Kernel::Exact);
