@@ -17,8 +17,4 @@ struct SourceFiles {
                                  const std::vector<std::string>& parts = {});
 };
 
-// Error where writeFile (runtime/file.h) would fail for sure: the path is a folder, or the folder
-// that it will lie in cannot be made or written. Writes nothing. Before any work.
-Result<void> checkWritable(const std::filesystem::path& file);
-
 } // namespace penumbra

@@ -112,7 +112,7 @@ Result<void> runCompareKernels(Renderer& renderer, Simulation& simulation, const
                                         {"combineVsRaster", ratios.at("combineVsRaster")}}},
                                       {"maxAbsDifference", {{"exactVsLiteral", maxDifference}}}};
     fmt::print("combine: literal {:.2f} ms, exact {:.2f} ms, cpu-scalar {:.1f} ms; exact is {:.1f} "
-               "x literal, {:.1f} x scalar\n",
+               "x as fast as literal, {:.1f} x as scalar\n",
                runs[0].statistics.at("combine"), runs[1].statistics.at("combine"),
                scalar.at("combine"), ratios.at("exactVsLiteral"), ratios.at("exactVsScalar"));
     return writeFile(file, json.dump(2) + "\n");

@@ -126,6 +126,11 @@ Result<void> runFrame(Renderer& renderer, Simulation& simulation, const View& vi
 
 Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptions& options)
 {
+    for (const std::filesystem::path& file :
+         {options.benchmark, options.compareKernels}) // before the work
+        if (!file.empty())
+            if (Result<void> writable = checkWritable(file); !writable)
+                return writable;
     Result<std::unique_ptr<Renderer>> made =
         Renderer::create(device, scene, {options.width, options.height});
     if (!made)

@@ -1,6 +1,7 @@
 #include "runtime/file.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -83,7 +84,7 @@ Result<void> writeFile(const std::filesystem::path& path, std::span<const std::b
     std::string temporary = path.string() + ".XXXXXX";
     Descriptor file{::mkostemp(temporary.data(), O_CLOEXEC)};
     if (file.fd < 0)
-        return systemError(path, "cannot create a file beside");
+        return systemError(path, "cannot create a file in its folder");
     ::fchmod(file.fd, 0644);
     std::size_t done = 0;
     while (done < bytes.size()) {
@@ -109,6 +110,30 @@ Result<void> writeFile(const std::filesystem::path& path, std::span<const std::b
 Result<void> writeFile(const std::filesystem::path& path, const std::string& text)
 {
     return writeFile(path, std::as_bytes(std::span(text)));
+}
+
+Result<void> checkWritable(const std::filesystem::path& file)
+{
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (std::filesystem::is_directory(status))
+        return Error{file.string() + ": a folder; name a file in it"};
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        return Error{file.string() + ": is not a regular file; it stays as it is"};
+    if (status.type() == std::filesystem::file_type::none)
+        return Error{fmt::format("{}: cannot be written: {}; choose another name or folder",
+                                 file.string(), error.message())};
+    // The nearest folder that is there; those below it will be made.
+    std::filesystem::path folder = std::filesystem::absolute(file, error).parent_path();
+    while (!std::filesystem::exists(folder, error) && folder.has_relative_path())
+        folder = folder.parent_path();
+    if (!std::filesystem::is_directory(folder, error))
+        return Error{fmt::format("{}: cannot be written: {} is no folder; choose another name",
+                                 file.string(), folder.string())};
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        return Error{fmt::format("{}: cannot be written: {}: {}; choose another folder",
+                                 file.string(), folder.string(), std::strerror(errno))};
+    return {};
 }
 
 } // namespace penumbra

@@ -27,4 +27,8 @@ Result<std::vector<std::byte>> readFile(const std::filesystem::path& path, std::
 Result<void> writeFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Result<void> writeFile(const std::filesystem::path& path, const std::string& text);
 
+// Error where writeFile would fail for sure: the path is a folder, or the folder
+// that it will lie in cannot be made or written. Writes nothing. Before any work.
+Result<void> checkWritable(const std::filesystem::path& file);
+
 } // namespace penumbra
