@@ -1,4 +1,5 @@
 #include "assetc/source_files.h"
+
 namespace penumbra {
 
 namespace fs = std::filesystem;

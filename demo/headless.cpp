@@ -40,7 +40,7 @@ std::uint64_t gpuBytes(const GpuSceneBuffers& b)
     for (const Buffer* buffer :
          {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices, &b.bounds,
           &b.clusters, &b.cull, &b.visible, &b.lists, &b.radiance, &b.drawCommands, &b.drawTemplate,
-          &b.denseRotations, &b.surfaceVertices})
+          &b.denseRotations, &b.skyNodes, &b.surfaceVertices})
         sum += buffer->bytes;
     return sum;
 }

@@ -67,7 +67,6 @@ FrameConstants Renderer::constants(const View& view) const
 
 Result<GpuFrame> Renderer::beginFrame(const View& view, Kernel kernel, bool combine)
 {
-    m_kernel = kernel;
     Result<GpuFrame> frame = m_ring.beginFrame();
     if (frame)
         recordFrame(*frame, m_passes, m_scene, constants(view),

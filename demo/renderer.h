@@ -85,7 +85,6 @@ private:
     FrameRing m_ring;
     EnvironmentLighting m_lighting;
     float m_exposure;
-    Kernel m_kernel = Kernel::Exact;
     bool m_surfaces = true;
     std::uint32_t m_slot = 0; // of the frame last drawn
 };

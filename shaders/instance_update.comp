@@ -16,11 +16,11 @@ void main()
     const InstanceInput instance = inputs[gl_GlobalInvocationID.x];
     const GpuInstance g = makeInstance(instance, fields[instance.field == kNoField ? 0u : instance.field]);
     instances[i] = g;
-    if (frame.denseRotations != 0u)
+    if (frame.literal != 0u)
         denseRotations[i] = denseRotation(instanceRotation(g));
     const mat3 worldFromObject = rotationMatrix(instance.rotation);
     // A bound instead of a branch: lavapipe runs branches that no lane takes.
-    const uint nodes = frame.denseRotations == 0u && i < frame.instanceCount ? kSkyNodes : 0u;
+    const uint nodes = frame.literal == 0u && i < frame.instanceCount ? kSkyNodes : 0u;
     for (uint n = 0u; n < nodes; ++n) {
         const Sh6 basis = shBasis6(worldFromObject * kShNodes[n].xyz);
         vec3 radiance = vec3(0.0);

@@ -58,7 +58,7 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
                  const FrameTargets& targets)
 {
     FrameConstants frame = constants;
-    frame.denseRotations = options.kernel == Kernel::Literal ? 1 : 0;
+    frame.literal = options.kernel == Kernel::Literal ? 1 : 0;
     scene.writeFrame(gpu.slot, frame);
     recordInstanceUpdate(gpu, passes, scene);
     recordClusterCull(gpu, passes, scene);

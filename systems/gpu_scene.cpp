@@ -282,13 +282,13 @@ void GpuScene::touch(std::uint32_t row)
 void GpuScene::touchOutdated(const FrameConstants& frame)
 {
     const bool relit = !std::equal(m_environment.begin(), m_environment.end(), frame.light);
-    if (m_denseRotations != frame.denseRotations)
+    if (m_literal != frame.literal)
         for (std::uint32_t row = 0; row < rowCount(m_data); ++row)
             touch(row);
-    else if (relit && frame.denseRotations == 0)
+    else if (relit && frame.literal == 0)
         for (std::uint32_t row = 0; row < m_data.instances.size(); ++row)
             touch(row);
-    m_denseRotations = frame.denseRotations;
+    m_literal = frame.literal;
     std::copy(std::begin(frame.light), std::end(frame.light), m_environment.begin());
 }
 

@@ -97,7 +97,7 @@ private:
     std::vector<bool> m_isChanged;
     GpuSkies m_skies;
     std::array<vec4, kLightCoefficients> m_environment{}; // FrameConstants::light of the last frame
-    std::uint32_t m_denseRotations = ~0u;                 // likewise; at first none
+    std::uint32_t m_literal = ~0u;                        // likewise; at first none
     SkyLobes m_skyLobes;
     std::uint64_t m_skyLobesAt = 0;
 };

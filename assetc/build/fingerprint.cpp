@@ -67,9 +67,12 @@ std::int64_t waitForFileTick()
     timespec begin{}; // files may be stamped by this clock, which runs ahead of fileClock
     ::clock_gettime(CLOCK_REALTIME, &begin);
     std::int64_t now = fileClock();
-    for (int i = 0; i < 250 && now <= nanoseconds(begin); ++i, now = fileClock())
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-    return now; // too early where somebody sets the clock back meanwhile
+    // Ticks take 1 to 10 ms. Who sets the clock back meanwhile is not waited for: 50 ms at most.
+    constexpr int kMostSleeps = 250;
+    constexpr std::chrono::microseconds kSleep(200);
+    for (int i = 0; i < kMostSleeps && now <= nanoseconds(begin); ++i, now = fileClock())
+        std::this_thread::sleep_for(kSleep);
+    return now;
 }
 
 Fingerprint fingerprintFile(const std::filesystem::path& path, std::int64_t since)

@@ -25,7 +25,7 @@ Result<double> FieldCombiner::run(const FrameConstants& constants, Kernel kernel
 {
     using Clock = std::chrono::steady_clock;
     FrameConstants frame = constants;
-    frame.denseRotations = kernel == Kernel::Literal ? 1 : 0;
+    frame.literal = kernel == Kernel::Literal ? 1 : 0;
     m_scene.writeFrame(0, frame);
     const auto start = Clock::now();
     const Result<void> done = submitAndWait(*m_device, [&](VkCommandBuffer cmd) {

@@ -82,9 +82,9 @@ void Query<Terms...>::each(F&& f) const
         const IterationGuard guard(*m_iterating);
         for (const Match& match : m_cache->matches()) {
             const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
-            const uint32_t ofBlock =
+            const uint32_t blockSegments =
                 std::max(match.archetype->blockRows() >> match.archetype->segmentShift(), 1u);
-            const uint32_t step = std::min(ofBlock, kListedSegments);
+            const uint32_t step = std::min(blockSegments, kListedSegments);
             for (uint32_t s = 0; s < segments; s += step)
                 callChanged(f, match, s, std::min(s + step, segments) - 1);
         }

@@ -117,8 +117,8 @@ struct FrameConstants {
     uint clusterCount;
     uint instanceCount; // the rows of lights follow those of instances
     uint lightCount;
-    uint denseRotations; // 1: instance_update writes what kernel literal needs besides instances;
-                         // 0: what exact does
+    uint literal;              // 1: pass instance_update writes denseRotations, for kernel literal;
+                               // 0: skyNodes, for kernel exact
     float backgroundIntensity; // factor of both maps
     uint culls;                // kCull… bits
     float skyIntensity[kSkyMaps];

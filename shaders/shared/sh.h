@@ -68,7 +68,9 @@ struct Sh6 {
     float c[36];
 };
 
-// Order 6, for light: kernel exact takes two bands more of it than fields have.
+// Order 6, for light: kernel exact takes two bands more of it than fields have. The polynomials are
+// those of Sloan, "Stupid Spherical Harmonics (SH) Tricks" (GDC 2008), "Polynomial
+// Forms of SH Basis".
 PENUMBRA_FN Sh6 shBasis6(vec3 d)
 {
     const float x = d.x, y = d.y, z = d.z;
@@ -152,8 +154,9 @@ PENUMBRA_FN ShTurn shTurn(float cosine, float sine)
     return turn;
 }
 
-// Euler constants of a rotation matrix (columns are the images of x, y, z). Near the poles any
-// alpha will do, as gamma is what is left once it has been undone.
+// Euler constants of a rotation matrix (columns are the images of x, y, z), from
+// Rz(-alpha) R = Ry(beta) Rz(gamma): its column z is (sin beta, 0, cos beta), its row y is
+// (sin gamma, cos gamma, 0). So near the poles, where z says little of alpha, any alpha will do.
 PENUMBRA_FN ShRotation shRotation(mat3 r)
 {
     const float sin2 = r[2][0] * r[2][0] + r[2][1] * r[2][1];

@@ -54,7 +54,8 @@ PENUMBRA_FN float entityImportance(vec3 to, float highest, float sphereRadius, f
 }
 
 // What of an entity counts, beside those of a full list: `least` is the importance of the most
-// important one left out, 0 where none is. 0 at equal importance, so the two change places unseen.
+// important one left out, 0 where none is. 0 at equal importance, so the two change places unseen;
+// why the band is a quarter wide: docs/decisions/0008.
 PENUMBRA_FN float entityShare(float importance, float least)
 {
     return least > 0.0f ? clamp(4.0f * (importance / least - 1.0f), 0.0f, 1.0f) : 1.0f;

@@ -169,7 +169,7 @@ TEST_F(FrameTest, FullListsEqualTwin)
     for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
         lists[drawn.visible[slot]] = &drawn.lists[slot * kListStride];
     std::uint32_t fullOfOccluders = 0, fullOfLights = 0, partial = 0;
-    const auto counting = [](const std::uint32_t* entries, std::uint32_t count,
+    const auto sharesOf = [](const std::uint32_t* entries, std::uint32_t count,
                              std::uint32_t stride) {
         std::map<std::uint32_t, float> shares; // by row
         for (std::uint32_t i = 0; i < count; ++i)
@@ -193,9 +193,9 @@ TEST_F(FrameTest, FullListsEqualTwin)
         std::vector<std::uint32_t> lights;
         for (const ClusterLight& light : cluster.lights)
             lights.push_back(light.entry);
-        expectEqual(counting(list + kListOccluders, list[0], 1),
-                    counting(cluster.occluders.data(), list[0], 1));
-        expectEqual(counting(list + kListLights, list[1], 3), counting(lights.data(), list[1], 1));
+        expectEqual(sharesOf(list + kListOccluders, list[0], 1),
+                    sharesOf(cluster.occluders.data(), list[0], 1));
+        expectEqual(sharesOf(list + kListLights, list[1], 3), sharesOf(lights.data(), list[1], 1));
         fullOfOccluders += list[0] == kMaxClusterOccluders;
         fullOfLights += list[1] == kMaxClusterLights;
     }

@@ -288,9 +288,7 @@ protected:
     static int listings(const SceneData& scene, std::uint32_t row)
     {
         int count = 0;
-        FrameConstants frame = frameConstants({}, LightSh{}, 0);
-        frame.culls = kCullHorizon;
-        for (const ClusterEntities& cluster : cullAndSort(scene, updateInstances(scene), frame)) {
+        for (const ClusterEntities& cluster : sortAll(scene, updateInstances(scene))) {
             if (scene.clusters[cluster.cluster].instance != 0)
                 continue;
             for (const std::uint32_t entry : cluster.occluders)
@@ -355,10 +353,8 @@ TEST(Lists, KeepABrightLampAmongManyDimOnes)
         lights.push_back(
             {.asset = 1, .position = vec3(0.05f * static_cast<float>(i - 15), 0.5f, 0)});
     const SceneData scene = build(assets, {{.mesh = 0, .position = vec3(0, -0.05f, 0)}}, lights);
-    FrameConstants frame = frameConstants({}, LightSh{}, 0);
-    frame.culls = kCullHorizon;
     int full = 0;
-    for (const ClusterEntities& cluster : cullAndSort(scene, updateInstances(scene), frame)) {
+    for (const ClusterEntities& cluster : sortAll(scene, updateInstances(scene))) {
         if (cluster.lights.size() < kMaxClusterLights)
             continue;
         ++full;

@@ -226,14 +226,19 @@ TestScene makeCrowdedTestScene()
     return makeScene(true, 48);
 }
 
+std::vector<ClusterEntities> sortAll(const SceneData& data, const CpuInstances& rows)
+{
+    FrameConstants frame = frameConstants({}, LightSh{}, 0);
+    frame.culls = kCullHorizon;
+    return cullAndSort(data, rows, frame);
+}
+
 std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants)
 {
-    FrameConstants frame = constants;
-    frame.culls = kCullHorizon; // seen from everywhere
     const CpuInstances rows = updateInstances(data);
     std::vector<vec4> radiance(data.radianceCount);
-    for (const ClusterEntities& cluster : cullAndSort(data, rows, frame))
-        combineCluster(kernel, data, rows, frame, cluster, radiance);
+    for (const ClusterEntities& cluster : sortAll(data, rows))
+        combineCluster(kernel, data, rows, constants, cluster, radiance);
     return radiance;
 }
 

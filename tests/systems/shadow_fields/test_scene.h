@@ -37,6 +37,9 @@ TestScene makeLitTestScene();
 // More of both than the lists of a cluster hold.
 TestScene makeCrowdedTestScene();
 
+// All clusters with their lists by the CPU twin, whatever the camera sees.
+std::vector<ClusterEntities> sortAll(const SceneData& data, const CpuInstances& rows);
+
 // Radiance of every receiver by the CPU twin, whatever the camera sees: [radianceCount].
 std::vector<vec4> shadeAll(Kernel kernel, const SceneData& data, const FrameConstants& constants);
 
