@@ -90,6 +90,10 @@ private:
             return Error{fmt::format(
                 "KHR_draco_mesh_compression: no bufferView {}, or no attributes", view)};
         m_dracoIds = extension.Get("attributes");
+        for (const std::string& name : m_dracoIds.Keys())
+            if (!m_dracoIds.Get(name).IsInt())
+                return Error{fmt::format(
+                    "KHR_draco_mesh_compression: the id of attribute {} is no whole number", name)};
         const tinygltf::BufferView& source = m_model->bufferViews[static_cast<std::size_t>(view)];
         const auto& data = m_model->buffers[static_cast<std::size_t>(source.buffer)].data;
         auto decoded = DracoMesh::decode(
