@@ -8,7 +8,7 @@ set(assets "")
 function(penumbra_demo_mesh NAME SOURCE)
     set(output ${PENUMBRA_ASSET_DIR}/${NAME}.glb)
     add_custom_command(OUTPUT ${output}
-        COMMAND assetc bake ${SOURCE} -o ${output} ${ARGN}
+        COMMAND assetc bake ${SOURCE} -o ${output} --lods 4 ${ARGN}
         DEPENDS assetc ${SOURCE} COMMENT "Asset ${NAME}.glb" VERBATIM)
     set(assets ${assets} ${output} PARENT_SCOPE)
 endfunction()

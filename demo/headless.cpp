@@ -40,7 +40,7 @@ std::uint64_t gpuBytes(const GpuSceneBuffers& b)
     for (const Buffer* buffer :
          {&b.fields, &b.instances, &b.fieldSamples, &b.receivers, &b.indices, &b.bounds,
           &b.clusters, &b.cull, &b.visible, &b.lists, &b.radiance, &b.drawCommands, &b.drawTemplate,
-          &b.denseRotations, &b.skyNodes, &b.surfaceVertices})
+          &b.denseRotations, &b.skyNodes, &b.casterPositions, &b.casterIndices, &b.surfaceVertices})
         sum += buffer->bytes;
     return sum;
 }
@@ -58,6 +58,7 @@ nlohmann::ordered_json benchmarkJson(const Device& device, Renderer& renderer,
             {"driver", device.driver},
             {"kernel", kernelName(options.cpuScalar ? Kernel::Literal : options.kernel)},
             {"receivers", receiverKindName(options.receivers)},
+            {"beams", renderer.scene().beams().size()},
             {"size", {options.width, options.height}},
             {"frames", measured.frames},
             {"objects", scene.world.query<const PhysicsBody>().count()},
@@ -132,7 +133,7 @@ Result<void> runHeadless(const Device& device, DemoScene& scene, const DemoOptio
             if (Result<void> writable = checkWritable(file); !writable)
                 return writable;
     Result<std::unique_ptr<Renderer>> made =
-        Renderer::create(device, scene, {options.width, options.height});
+        Renderer::create(device, scene, {options.width, options.height}, options.beams);
     if (!made)
         return made.error();
     Renderer& renderer = **made;

@@ -1,5 +1,7 @@
 #include "demo/options.h"
 
+#include "shaders/shared/beam.h"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -75,6 +77,12 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
                    "the others between them)")
         ->capture_default_str()
         ->check(CLI::IsMember({"vertex", "pixel", "pixel-half"}));
+    CLI::Option* beamsOption =
+        app.add_option("--beams", options.beams,
+                       "directional lights with shadow maps that the bright part of the "
+                       "environments becomes: sharp shadows of suns and windows")
+            ->capture_default_str()
+            ->check(CLI::Range(0u, kMaxBeams));
     app.add_option("--device", options.device, "name or index of a device, or cpu-scalar");
     app.add_flag("--list-devices", options.listDevices, "list the devices and stop");
     app.add_option("--seed", options.seed, "seed of the scene")->capture_default_str();
@@ -88,12 +96,12 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
                 "--size",
                 "'" + size + "' is not WxH with sides of 16 to 8192, for example 1280x720");
         for (const CLI::Option* other :
-             {outOption, recordOption, benchmarkOption, referenceOption, kernelOption})
+             {outOption, recordOption, benchmarkOption, referenceOption, kernelOption, beamsOption})
             if (compareOption->count() > 0 && other->count() > 0)
                 throw CLI::ValidationError("--compare-kernels",
                                            "is a run of its own: leave out " + other->get_name());
         for (const CLI::Option* other : {sceneOption, recordOption, benchmarkOption,
-                                         referenceOption, kernelOption, compareOption})
+                                         referenceOption, kernelOption, compareOption, beamsOption})
             if (sweepOption->count() > 0 && other->count() > 0)
                 throw CLI::ValidationError("--sweep",
                                            "is a run of its own: leave out " + other->get_name());
@@ -102,6 +110,8 @@ std::optional<int> parseOptions(int argc, char** argv, DemoOptions& options)
         if (receivers != "vertex" && (compareOption->count() > 0 || options.device == "cpu-scalar"))
             throw CLI::ValidationError("--receivers",
                                        "the scalar CPU path works on vertices: leave it out");
+        if (options.beams > 0 && options.device == "cpu-scalar")
+            throw CLI::ValidationError("--beams", "need shadow maps, which cpu-scalar has not");
         if (reference < 16 || reference > 65536)
             throw CLI::ValidationError("--reference", "directions per receiver: 16 to 65536");
     } catch (const CLI::ParseError& error) {

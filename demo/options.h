@@ -22,6 +22,7 @@ struct DemoOptions {
     std::string sweep;                      // lights, empty: none
     Kernel kernel = Kernel::Exact;
     ReceiverKind receivers = ReceiverKind::Vertex;
+    std::uint32_t beams = 0;
     std::string device; // name, index, empty: the best
     bool cpuScalar = false;
     std::uint64_t seed = 1;

@@ -42,9 +42,9 @@ struct Figures {
 // `test` under all lights, `testSky` under the environment alone; equal where there is no other.
 Figures measure(const TracedScene& traced, const DemoScene& scene, const Receivers& receivers,
                 std::span<const vec3> test, std::span<const vec3> testSky,
-                std::vector<LightErrors> lights, std::uint32_t samples)
+                std::vector<LightErrors> lights, std::uint32_t beams, std::uint32_t samples)
 {
-    const TracedSky skies = tracedSky(scene);
+    const TracedSky skies = tracedSky(scene, beams);
     const auto trace = [&](const ReferenceLight& sky) {
         return shadeReference(traced.scene, sky, receivers.receivers, {.samples = samples});
     };
@@ -185,7 +185,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     if (!lights)
         return lights.error();
     const Figures figures = measure(*traced, scene, receivers, atReceivers(*radiance, receivers),
-                                    testSky, std::move(*lights), options.samples);
+                                    testSky, std::move(*lights), renderer.beams(), options.samples);
     const RadianceErrors& errors = figures.errors;
     const Result<SurfacePicture> surfaces = drawSurfaces(renderer, view);
     if (!surfaces)
@@ -200,7 +200,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
     const Kernel kernel = options.cpuScalar ? Kernel::Literal : options.kernel;
     nlohmann::ordered_json causes{{"lightBandLimit", figures.lightBandLimit},
                                   {"fieldsAndProducts", figures.fieldsAndProducts}};
-    if (!renderer.pixels()) {
+    if (!renderer.pixels() && renderer.beams() == 0) {
         if (Result<void> added = addChain(causes,
                                           {data, rows, scene.assets.meshes(), traced->scene,
                                            renderer.constants(view), kernel, skyRadiance, 256,
@@ -208,8 +208,9 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
                                           figures);
             !added)
             return added;
-        causes["vertexInterpolation"] = interpolationError(*traced, scene, camera, options.samples);
     }
+    if (!renderer.pixels())
+        causes["vertexInterpolation"] = interpolationError(*traced, scene, camera, options.samples);
     const FlipResult flipped = flipMap(picture.image, *fields);
 
     nlohmann::ordered_json json{
@@ -217,6 +218,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         {"kernel", options.cpuScalar ? "cpu-scalar" : kernelName(options.kernel)},
         {"receivers", receivers.receivers.size()},
         {"receiverKind", receiverKindName(renderer.receivers())},
+        {"beams", renderer.beams()},
         {"samples", options.samples},
         {"meanUnshadowed", errors.meanUnshadowed},
         {"rmse", errors.rmse},
@@ -243,7 +245,7 @@ Result<void> runReference(Renderer& renderer, const DemoScene& scene, const View
         if (done)
             done = writePng(options.out / name, image);
     if (done)
-        fmt::print("reference ({} directions, {} receivers): rmseRelative {:.4f} (order-4 light "
+        fmt::print("reference ({} directions, {} receivers): rmseRelative {:.4f} (light "
                    "{:.4f}, fields {:.4f}), "
                    "bias {:+.4f}, FLIP {:.4f}; {:.1f} s traced, {:.1f} ms with fields\n",
                    options.samples, receivers.receivers.size(), errors.rmseRelative,

@@ -11,9 +11,9 @@
 namespace penumbra {
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoScene& scene,
-                                                   VkExtent2D extent)
+                                                   VkExtent2D extent, std::uint32_t beams)
 {
-    std::unique_ptr<Renderer> renderer(new Renderer(device, scene));
+    std::unique_ptr<Renderer> renderer(new Renderer(device, scene, beams));
     Result<SceneData> data = extractScene(scene.world, scene.assets);
     if (!data)
         return scene.path.empty() ? data.error() : fail(data.error(), scene.path.string());
@@ -22,7 +22,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoSce
         return passes.error();
     renderer->m_passes = std::move(*passes);
     Result<GpuScene> gpuScene =
-        GpuScene::create(device, std::move(*data), {}, renderer->m_ring.framesInFlight());
+        GpuScene::create(device, std::move(*data), {}, renderer->m_ring.framesInFlight(), beams);
     if (!gpuScene)
         return gpuScene.error();
     renderer->m_scene = std::move(*gpuScene);
@@ -44,6 +44,7 @@ Result<void> Renderer::apply(const SceneChanges& changes)
     Result<void> done;
     if (changes.relit) {
         m_lighting.set(changes.environments);
+        m_scene.setBeams(m_lighting.beams());
         done = m_scene.setBackground(m_lighting.background());
     }
     if (changes.relit || !changes.materials.empty()) {
@@ -130,6 +131,10 @@ Result<std::map<std::string, double>> Renderer::timePasses(Kernel kernel)
     time("combine", [&](const GpuFrame& gpu) {
         recordCombine(gpu, m_passes, receivers(gpu), kernel, m_scene.mirrors());
     });
+    if (!m_scene.beams().empty()) {
+        time("beam_maps", [&](const GpuFrame& gpu) { recordBeamMaps(gpu, m_passes, m_scene); });
+        time("beams", [&](const GpuFrame& gpu) { recordBeams(gpu, m_passes, receivers(gpu)); });
+    }
     if (m_pixels)
         time("pixel_resolve", [&](const GpuFrame& gpu) { recordPixelResolve(gpu, *m_pixels); });
     time("raster", [&](const GpuFrame& gpu) {

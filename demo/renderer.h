@@ -17,9 +17,9 @@ namespace penumbra {
 
 class Renderer {
 public:
-    // Extracts `scene`; it and the device outlive the renderer.
+    // Extracts `scene`; it and the device outlive the renderer. `beams`: see EnvironmentLighting.
     static Result<std::unique_ptr<Renderer>> create(const Device& device, DemoScene& scene,
-                                                    VkExtent2D extent);
+                                                    VkExtent2D extent, std::uint32_t beams = 0);
 
     // From the next frame on. Error: out of memory, for a map that was not drawn before.
     Result<void> apply(const SceneChanges& changes);
@@ -64,6 +64,7 @@ public:
     Result<void> setRadiance(std::span<const vec4> radiance);
 
     [[nodiscard]] GpuScene& scene() { return m_scene; }
+    [[nodiscard]] std::uint32_t beams() const { return m_beams; } // at most
     [[nodiscard]] const LightSh& light() const { return m_lighting.light(); }
     [[nodiscard]] FrameConstants constants(const View& view) const;
     [[nodiscard]] const Image& display() const { return m_targets.display; }
@@ -71,9 +72,9 @@ public:
 
 private:
     Result<void> createPixels();
-    Renderer(const Device& device, const DemoScene& scene)
-        : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground()),
-          m_exposure(scene.camera.exposure)
+    Renderer(const Device& device, const DemoScene& scene, std::uint32_t beams)
+        : m_device(device), m_ring(device), m_lighting(scene.assets, scene.ground(), beams),
+          m_beams(beams), m_exposure(scene.camera.exposure)
     {}
 
     const Device& m_device;
@@ -84,6 +85,7 @@ private:
     ReceiverKind m_receivers = ReceiverKind::Vertex;
     FrameRing m_ring;
     EnvironmentLighting m_lighting;
+    std::uint32_t m_beams;
     float m_exposure;
     bool m_surfaces = true;
     std::uint32_t m_slot = 0; // of the frame last drawn

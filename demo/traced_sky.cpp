@@ -4,14 +4,19 @@
 
 namespace penumbra {
 
-TracedSky tracedSky(const DemoScene& scene)
+TracedSky tracedSky(const DemoScene& scene, std::uint32_t beams)
 {
+    std::size_t count = 0;
+    scene.world.query<const EnvironmentLight>().each([&](const EnvironmentLight&) { ++count; });
     std::vector<ReferenceLight> maps, order4;
     scene.world.query<const EnvironmentLight>().each([&](const EnvironmentLight& light) {
         const Environment lit = litEnvironment(scene.assets, light, scene.ground());
         const mat3 rotation = rotationMatrix(light.rotation);
         maps.push_back(ReferenceLight::fromMap(lit, rotation, light.intensity));
-        order4.push_back(ReferenceLight::fromSh4(lit.sh4, rotation, light.intensity));
+        const SkySplit split = splitSky(lit, beamShare(beams, count));
+        order4.push_back(ReferenceLight::fromSh4(split.rest.sh4, rotation, light.intensity));
+        if (!split.beams.empty())
+            order4.push_back(ReferenceLight::fromMap(split.bright, rotation, light.intensity));
     });
     return {ReferenceLight::sum(maps), ReferenceLight::sum(order4)};
 }

@@ -7,11 +7,13 @@
 namespace penumbra {
 
 struct TracedSky {
-    ReferenceLight maps;   // the maps themselves, what is above the ground of them
-    ReferenceLight order4; // their SH of order 4, rotated as directions are, not as coefficients
+    ReferenceLight maps; // the maps themselves, what is above the ground of them
+    // What the frame works with: SH of order 4, rotated as directions are, not as coefficients;
+    // with beams, those of what the beams leave, and the part of the maps that they stand for.
+    ReferenceLight order4;
 };
 
-// All EnvironmentLights as they are now.
-TracedSky tracedSky(const DemoScene& scene);
+// All EnvironmentLights as they are now, shared among `beams` as EnvironmentLighting does.
+TracedSky tracedSky(const DemoScene& scene, std::uint32_t beams = 0);
 
 } // namespace penumbra

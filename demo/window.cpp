@@ -97,7 +97,8 @@ Result<Show> makeShow(const Device& device, const DemoOptions& options, VkExtent
     if (!scene)
         return scene.error();
     show.scene = std::move(*scene);
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(device, *show.scene, extent);
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(device, *show.scene, extent, options.beams);
     if (!renderer)
         return renderer.error();
     show.renderer = std::move(*renderer);

@@ -18,11 +18,12 @@ layout(set = 0, binding = 11, scalar) buffer Visible { uint visible[]; };       
 layout(set = 0, binding = 12) uniform usamplerBuffer visibleTexels;
 layout(set = 0, binding = 13, scalar) buffer Lists { uint lists[]; };              // [visible][kListStride]: instance.h
 layout(set = 0, binding = 14) uniform usamplerBuffer listTexels;
-layout(set = 0, binding = 15, scalar) writeonly buffer Radiance { vec4 radiance[]; };
+layout(set = 0, binding = 15, scalar) buffer Radiance { vec4 radiance[]; };
 layout(set = 0, binding = 16, scalar) buffer DrawCommands { uint drawCommands[]; }; // [draw] VkDrawIndexedIndirectCommand
 layout(set = 0, binding = 17, scalar) buffer DenseRotations { DenseRotation denseRotations[]; };
 layout(set = 0, binding = 18, scalar) readonly buffer FieldSamples { uvec4 fieldSamples[]; };
 layout(set = 0, binding = 19, scalar) readonly buffer Receivers { ReceiverTexels receivers[]; };
+layout(set = 0, binding = 22) uniform sampler2D beamMaps; // depth: shaders/shared/beam.h
 // [instance][kSkyNodes]: the light at the nodes, which lie in the instance's axes, times their weights.
 layout(set = 0, binding = 28, scalar) writeonly buffer SkyNodes { vec4 skyNodes[]; };
 layout(set = 0, binding = 29) uniform samplerBuffer skyNodeTexels;

@@ -27,7 +27,7 @@ EnvironmentLighting::Lit& EnvironmentLighting::lit(const EnvironmentLight& light
     const AssetHandle asset = light.asset;
     const vec3 up = m_ground ? mapUp(light) : vec3(0);
     const auto known = std::find_if(m_lit.begin(), m_lit.end(), [&](const Lit& lit) {
-        return lit.asset == asset && length(lit.up - up) < kSameUp;
+        return lit.asset == asset && length(lit.up - up) < kSameUp && lit.share == m_share;
     });
     if (known != m_lit.end()) {
         std::rotate(known, known + 1, m_lit.end());
@@ -36,8 +36,14 @@ EnvironmentLighting::Lit& EnvironmentLighting::lit(const EnvironmentLight& light
     if (m_lit.size() == kMaxLit)
         m_lit.erase(m_lit.begin());
     const Environment& whole = m_assets.environment(asset);
-    m_lit.push_back({asset, up, m_ground ? aboveGround(whole, up).sh6 : whole.sh6, {}});
+    SkySplit split = splitSky(m_ground ? aboveGround(whole, up) : whole, m_share);
+    m_lit.push_back({asset, up, m_share, split.rest.sh6, std::move(split.beams), {}});
     return m_lit.back();
+}
+
+std::uint32_t beamShare(std::uint32_t beams, std::size_t lightCount)
+{
+    return lightCount == 0 ? 0 : beams / static_cast<std::uint32_t>(lightCount);
 }
 
 const SkyLobes& EnvironmentLighting::lobes()
@@ -57,15 +63,22 @@ const SkyLobes& EnvironmentLighting::lobes()
 void EnvironmentLighting::set(std::span<const EnvironmentLight> lights)
 {
     m_light = {};
+    m_beams.clear();
+    m_share = beamShare(m_maxBeams, lights.size());
     m_lobes.texels.clear();
     m_lights.clear();
     std::vector<const EnvironmentLight*> drawn;
     for (const EnvironmentLight& light : lights) {
         if (light.intensity == 0)
             continue;
-        LightSh radiance = lit(light).light;
+        const Lit& known = lit(light);
+        const mat3 rotation = rotationMatrix(light.rotation);
+        for (const SkyBeam& beam : known.beams)
+            m_beams.push_back(
+                {rotation * beam.direction, light.intensity * beam.irradiance, beam.halfAngle});
+        LightSh radiance = known.light;
         if (light.rotation != vec4(0, 0, 0, 1))
-            radiance = rotatedLight(radiance, rotationMatrix(light.rotation));
+            radiance = rotatedLight(radiance, rotation);
         for (std::size_t k = 0; k < radiance.size(); ++k)
             m_light[k] += light.intensity * radiance[k];
         m_lights.push_back(light);

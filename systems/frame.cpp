@@ -68,10 +68,15 @@ void recordFrame(const GpuFrame& gpu, const FramePasses& passes, GpuScene& scene
         recordPixelClusters(gpu, *options.pixels);
         recordPixelBounds(gpu, *options.pixels);
     }
+    const bool beams = options.combine && !scene.beams().empty();
+    if (beams)
+        recordBeamMaps(gpu, passes, scene);
     const ReceiverClusters receivers = receiverClusters(gpu, scene, options.pixels);
     recordEntitySort(gpu, passes, receivers);
     if (options.combine)
         recordCombine(gpu, passes, receivers, options.kernel, scene.mirrors());
+    if (beams)
+        recordBeams(gpu, passes, receivers);
     if (options.combine && options.pixels)
         recordPixelResolve(gpu, *options.pixels);
     computeToGraphics(gpu.cmd);
@@ -126,6 +131,59 @@ void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
 {
     const GpuZone zone(gpu.cmd, "combine");
     bind(gpu.cmd, passes.combine(kernel, mirrors), receivers.set, nullptr, 0);
+    vkCmdDispatchIndirect(gpu.cmd, receivers.cull, offsetof(CullResult, combineGroups));
+}
+
+void recordBeamMaps(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene)
+{
+    PENUMBRA_ASSERT(!scene.beams().empty(), "no beams to draw maps of");
+    const GpuZone zone(gpu.cmd, "beam_maps");
+    const Image& maps = scene.beamMaps();
+    computeToGraphics(gpu.cmd); // the instances
+    transitionImage(gpu.cmd, maps.handle, maps.aspect, kUndefinedImage, kDepthTarget);
+    const VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                          .imageView = maps.view,
+                                          .imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                          .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                          .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+                                          .clearValue = {.depthStencil = {.depth = 1}}};
+    const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                               .renderArea = {.extent = maps.extent},
+                               .layerCount = 1,
+                               .pDepthAttachment = &depth};
+    vkCmdBeginRendering(gpu.cmd, &info);
+    const GpuSceneBuffers& b = scene.buffers();
+    const VkBuffer buffers[] = {b.casterPositions.handle, b.instances.handle};
+    const VkDeviceSize offsets[] = {0, 0};
+    vkCmdBindVertexBuffers(gpu.cmd, 0, 2, buffers, offsets);
+    vkCmdBindIndexBuffer(gpu.cmd, b.casterIndices.handle, 0, VK_INDEX_TYPE_UINT32);
+    for (std::uint32_t beam = 0; beam < scene.beams().size(); ++beam) {
+        const VkRect2D area = beamMapArea(beam);
+        const VkViewport viewport{static_cast<float>(area.offset.x),
+                                  static_cast<float>(area.offset.y),
+                                  static_cast<float>(area.extent.width),
+                                  static_cast<float>(area.extent.height),
+                                  0,
+                                  1};
+        vkCmdSetViewport(gpu.cmd, 0, 1, &viewport);
+        vkCmdSetScissor(gpu.cmd, 0, 1, &area);
+        bindAndPush(gpu.cmd, passes.beamMap, scene.slot(gpu.slot).set, beam);
+        for (const CasterRun& run : scene.casters()) {
+            const MeshRange& mesh = scene.data().meshes[run.mesh];
+            vkCmdDrawIndexed(gpu.cmd, mesh.casterIndexCount, run.instanceCount,
+                             mesh.firstCasterIndex,
+                             static_cast<std::int32_t>(mesh.firstCasterVertex), run.firstInstance);
+        }
+    }
+    vkCmdEndRendering(gpu.cmd);
+    transitionImage(gpu.cmd, maps.handle, maps.aspect, kDepthTarget, kShaderRead);
+}
+
+void recordBeams(const GpuFrame& gpu, const FramePasses& passes, const ReceiverClusters& receivers)
+{
+    const GpuZone zone(gpu.cmd, "beams");
+    computeToCompute(gpu.cmd); // the radiance of pass combine
+    bind(gpu.cmd, passes.beams, receivers.set, nullptr, 0);
     vkCmdDispatchIndirect(gpu.cmd, receivers.cull, offsetof(CullResult, combineGroups));
 }
 
@@ -203,6 +261,7 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
                  .bindings = scene,
                  .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale, lights,
                                mirrors}});
+    compute(passes.beams, {.shader = "beams.comp", .bindings = scene});
     compute(passes.post, {.shader = "post.comp",
                           .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
                                        {1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}},
@@ -228,6 +287,23 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
     raster.constants = {1}; // shaders/pixel_radiance.glsl
     graphics(passes.rasterPixels.plain, raster);
     graphics(passes.rasterPixels.surface, surfaceDesc(raster));
+    Result<Pipeline> beamMap = createGraphicsPipeline(
+        device,
+        {.name = "beam_map",
+         .vertexShader = "beam_map.vert",
+         .bindings = scene,
+         .pushBytes = sizeof(std::uint32_t),
+         .vertexBindings = {{0, sizeof(vec3), kPerVertex}, {1, sizeof(GpuInstance), kPerInstance}},
+         .vertexAttributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0},
+                              {1, 1, kVec4, kRow0},
+                              {2, 1, kVec4, kRow0 + 16},
+                              {3, 1, kVec4, kRow0 + 32}},
+         .depthFormat = kBeamMapFormat,
+         .cull = VK_CULL_MODE_NONE});
+    if (beamMap)
+        passes.beamMap = std::move(*beamMap);
+    else
+        failed = beamMap.error();
     graphics(passes.background, {.name = "background",
                                  .vertexShader = "background.vert",
                                  .fragmentShader = "background.frag",

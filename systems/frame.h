@@ -20,6 +20,7 @@ struct RasterPasses {
 // Pipelines of all passes. Compiled once per device: about 2 CPU-seconds on lavapipe.
 struct FramePasses {
     Pipeline instanceUpdate, clusterCull, entitySort, combineLiteral, background, post;
+    Pipeline beamMap, beams;               // shaders/shared/beam.h
     Pipeline combineExact, combineMirrors; // the second with what mirrors the filtered sky
     RasterPasses raster, rasterPixels;     // radiance of vertices, of pixels
     // `mirrors`: GpuScene::mirrors().
@@ -72,6 +73,9 @@ void recordEntitySort(const GpuFrame& gpu, const FramePasses& passes,
                       const ReceiverClusters& receivers);
 void recordCombine(const GpuFrame& gpu, const FramePasses& passes,
                    const ReceiverClusters& receivers, Kernel kernel, bool mirrors);
+// With beams only.
+void recordBeamMaps(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene);
+void recordBeams(const GpuFrame& gpu, const FramePasses& passes, const ReceiverClusters& receivers);
 void recordRaster(const GpuFrame& gpu, const FramePasses& passes, const GpuScene& scene,
                   const FrameTargets& targets, bool surfaces = true,
                   const PixelReceivers* pixels = nullptr);

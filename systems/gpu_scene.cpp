@@ -39,6 +39,7 @@ constexpr Binding kBindings[] = {
     {19, kStorage},
     {kFirstSkyBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
     {kFirstSkyBinding + 1, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_FRAGMENT_BIT},
+    {kBeamMapBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_SHADER_STAGE_COMPUTE_BIT},
     {kPixelRadianceBinding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
      VK_SHADER_STAGE_FRAGMENT_BIT},
     {kSkyNodeBinding, kStorage},
@@ -124,7 +125,7 @@ std::span<const Binding> sceneBindings()
 }
 
 Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const SkyMap& sky,
-                                  std::uint32_t framesInFlight)
+                                  std::uint32_t framesInFlight, std::uint32_t maxBeams)
 {
     PENUMBRA_ASSERT(!data.instances.empty() && !data.clusters.empty(),
                     "a scene has at least one instance");
@@ -159,6 +160,10 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
         maker.with("receivers", data.receivers, kTexelUse | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
                    VK_FORMAT_R32G32B32A32_UINT);
     b.indices = maker.with("indices", data.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    b.casterPositions =
+        maker.with("shadow casters", data.casterPositions, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+    b.casterIndices = maker.with("indices of shadow casters", data.casterIndices,
+                                 VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     b.bounds = maker.with("cluster bounds", data.bounds, kStorageUse);
     b.clusters = maker.with("clusters", data.clusters, kStorageUse);
     b.instances =
@@ -203,6 +208,15 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
     if (Result<void> set = scene.setBackground({&sky, sky.map != nullptr ? 1u : 0u}); !set)
         return set.error();
 
+    Result<Image> beamMaps = createBeamMaps(device, maxBeams);
+    if (!beamMaps)
+        return beamMaps.error();
+    scene.m_beamMaps = std::move(*beamMaps);
+    scene.m_beamSampler =
+        createSampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    scene.m_maxBeams = maxBeams;
+    scene.m_casters = casterRuns(data);
+
     scene.m_layout = createSetLayout(device, sceneBindings());
     scene.m_sets = DescriptorSets(device);
     for (std::uint32_t i = 0; i < framesInFlight; ++i) {
@@ -246,6 +260,7 @@ void GpuScene::writeSet(const Device& device, VkDescriptorSet set, std::uint32_t
         .storageBuffer(kSkyNodeBinding, b.skyNodes.handle)
         .texels(kSkyNodeBinding + 1, b.skyNodes.texels)
         .texels(kSkyLobeBinding, slot.skyLobes.texels)
+        .sampledImage(kBeamMapBinding, m_beamMaps.view, m_beamSampler)
         .write();
     // Every sampler is bound, also where no pass reads it: lavapipe reads descriptors that were
     // never written.
@@ -297,6 +312,12 @@ Result<void> GpuScene::setBackground(std::span<const SkyMap> skies)
     return m_skies.set(skies);
 }
 
+void GpuScene::setBeams(std::span<const SkyBeam> beams)
+{
+    PENUMBRA_ASSERT(beams.size() <= m_maxBeams, "{} beams, room for {}", beams.size(), m_maxBeams);
+    m_beams.assign(beams.begin(), beams.end());
+}
+
 void GpuScene::setSkyLobes(const SkyLobes& lobes)
 {
     PENUMBRA_ASSERT(lobes.texels.empty() || lobes.texels.size() == kSkyLobeTexels,
@@ -314,6 +335,8 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.clusterCount = static_cast<std::uint32_t>(m_data.clusters.size());
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
+    placeBeams(m_data, m_beams, frame);
+    frame.mirrors = mirrors() ? 1 : 0;
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
     touchOutdated(frame);
     if (slot.skyLobesAt != m_skyLobesAt && mirrors())

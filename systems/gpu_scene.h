@@ -6,6 +6,7 @@
 #include "runtime/vk/buffer.h"
 #include "runtime/vk/descriptors.h"
 #include "runtime/vk/device.h"
+#include "systems/beam_maps.h"
 #include "systems/gpu_skies.h"
 #include "systems/gpu_surfaces.h"
 #include "systems/scene_data.h"
@@ -23,6 +24,7 @@ std::span<const Binding> sceneBindings();
 struct GpuSceneBuffers {
     Buffer fields, instances, fieldSamples, receivers, indices, bounds, clusters;
     Buffer cull, visible, lists, radiance, drawCommands, drawTemplate, denseRotations, skyNodes;
+    Buffer casterPositions, casterIndices;
     Buffer surfaceVertices; // none: all meshes are plain
 };
 
@@ -48,9 +50,9 @@ class GpuScene {
 public:
     // Uploads everything. Keeps `data` for the CPU paths. `sky` is drawn behind the scene; without
     // a map, black. Error: out of memory, a scene larger than the device can bind or dispatch, or a
-    // texture that cannot be decoded.
+    // texture that cannot be decoded. `maxBeams`: what setBeams has room for, 2 MB each.
     static Result<GpuScene> create(const Device& device, SceneData data, const SkyMap& sky,
-                                   std::uint32_t framesInFlight);
+                                   std::uint32_t framesInFlight, std::uint32_t maxBeams = 0);
 
     // The instance moves or changes its material from the next frame on; the light likewise.
     void setInstance(std::uint32_t index, const SceneInstance& instance);
@@ -64,6 +66,13 @@ public:
     // Nothing, as at first: surfaces mirror what the SH of the light hold.
     void setSkyLobes(const SkyLobes& lobes);
     [[nodiscard]] bool mirrors() const { return !m_skyLobes.texels.empty(); }
+
+    // Directional lights with shadow maps, beside the light of the frame's constants, from the next
+    // frame on. At most as many as the scene has room for (asserted).
+    void setBeams(std::span<const SkyBeam> beams);
+    [[nodiscard]] const std::vector<SkyBeam>& beams() const { return m_beams; }
+    [[nodiscard]] const Image& beamMaps() const { return m_beamMaps; }
+    [[nodiscard]] const std::vector<CasterRun>& casters() const { return m_casters; }
 
     // Writes what the frame of `slot` reads, which no frame in flight uses: constants, changed
     // rows, the maps of the background.
@@ -98,6 +107,11 @@ private:
     GpuSkies m_skies;
     std::array<vec4, kLightCoefficients> m_environment{}; // FrameConstants::light of the last frame
     std::uint32_t m_literal = ~0u;                        // likewise; at first none
+    std::vector<SkyBeam> m_beams;
+    std::uint32_t m_maxBeams = 0;
+    Image m_beamMaps;
+    UniqueSampler m_beamSampler;
+    std::vector<CasterRun> m_casters;
     SkyLobes m_skyLobes;
     std::uint64_t m_skyLobesAt = 0;
 };

@@ -13,7 +13,8 @@
 namespace penumbra {
 
 inline constexpr std::uint32_t kFirstSkyBinding = 20; // kSkyMaps of them
-inline constexpr std::uint32_t kSkyNodeBinding = 28;  // as storage, and as texels
+inline constexpr std::uint32_t kBeamMapBinding = 22;
+inline constexpr std::uint32_t kSkyNodeBinding = 28; // as storage, and as texels
 inline constexpr std::uint32_t kPixelRadianceBinding = 30;
 inline constexpr std::uint32_t kSkyLobeBinding = 31;
 

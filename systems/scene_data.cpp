@@ -26,6 +26,28 @@ void appendReceivers(const MeshAsset& mesh, MeshRange& range,
     }
 }
 
+constexpr float kMaxCasterError = 0.001f; // of the mesh's size
+
+// The coarsest level that a shadow map cannot tell from the mesh.
+void appendCaster(const MeshAsset& mesh, MeshRange& range, SceneData& scene)
+{
+    const float limit = kMaxCasterError * length(mesh.boundsMax - mesh.boundsMin);
+    const MeshGeometry* caster = &mesh;
+    for (const MeshLod& lod : mesh.lods) {
+        if (lod.error > limit)
+            break;
+        caster = &lod;
+        range.casterError = lod.error;
+    }
+    range.firstCasterVertex = static_cast<std::uint32_t>(scene.casterPositions.size());
+    range.firstCasterIndex = static_cast<std::uint32_t>(scene.casterIndices.size());
+    range.casterIndexCount = static_cast<std::uint32_t>(caster->indices.size());
+    scene.casterPositions.insert(scene.casterPositions.end(), caster->positions.begin(),
+                                 caster->positions.end());
+    scene.casterIndices.insert(scene.casterIndices.end(), caster->indices.begin(),
+                               caster->indices.end());
+}
+
 // Kernels step through a cell of 2 x 2 x 2 nodes with fixed strides, so all shells get the side of
 // the largest, and none is left out.
 void appendField(const ShadowField& field, SceneData& scene)
@@ -100,6 +122,7 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
         range.firstIndex = static_cast<std::uint32_t>(scene.indices.size());
         range.indexCount = static_cast<std::uint32_t>(mesh->indices.size());
         scene.indices.insert(scene.indices.end(), mesh->indices.begin(), mesh->indices.end());
+        appendCaster(*mesh, range, scene);
         range.firstBounds = static_cast<std::uint32_t>(scene.bounds.size());
         for (const MeshCluster& cluster : mesh->clusters)
             scene.bounds.push_back({vec4(cluster.center, cluster.radius),

@@ -42,6 +42,9 @@ struct MeshRange {
     std::uint32_t firstReceiver = 0, receiverCount = 0; // count: a multiple of kClusterReceivers
     std::uint32_t vertexCount = 0;
     std::uint32_t firstIndex = 0, indexCount = 0;
+    // What casts shadows into maps: a coarse level of the mesh.
+    std::uint32_t firstCasterVertex = 0, firstCasterIndex = 0, casterIndexCount = 0;
+    float casterError = 0; // of the level, metres
     std::uint32_t firstBounds = 0, clusterCount = 0;
     std::uint32_t field = kNoField;
     FieldKind fieldKind = FieldKind::Occlusion;
@@ -54,6 +57,8 @@ struct SceneData {
     std::vector<ReceiverTexels>
         receivers; // last cluster of a mesh padded with copies of its last vertex
     std::vector<std::uint32_t> indices; // relative to the mesh's firstReceiver
+    std::vector<vec3> casterPositions;
+    std::vector<std::uint32_t> casterIndices; // relative to the mesh's firstCasterVertex
     std::vector<ClusterBounds> bounds;
     std::vector<FieldInput> fields;  // at least one
     std::vector<uvec4> fieldSamples; // of a field [channel][y][x][shell], one side: its largest

@@ -3,6 +3,7 @@
 // Layout: scalar; offsets checked in tests/systems.
 #ifndef PENUMBRA_SHADERS_SHARED_INSTANCE_H
 #define PENUMBRA_SHADERS_SHARED_INSTANCE_H
+#include "shaders/shared/beam.h"
 #include "shaders/shared/field.h"
 PENUMBRA_BEGIN
 
@@ -122,6 +123,11 @@ struct FrameConstants {
     float backgroundIntensity; // factor of both maps
     uint culls;                // kCull… bits
     float skyIntensity[kSkyMaps];
+    GpuBeam beams[kMaxBeams];
+    uint beamCount;
+    uint mirrors; // 1: sharp surfaces mirror the filtered sky, which holds the beams
+    uint padding0;
+    uint padding1;
 };
 
 // A 16 x 16 block-diagonal rotation of SH vectors without its first entry, which is 1: rows of band
@@ -329,7 +335,7 @@ static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits
 static_assert(sizeof(penumbra::CullResult) == 32 &&
               offsetof(penumbra::CullResult, combineGroups) == 12);
-static_assert(sizeof(penumbra::FrameConstants) == 880 &&
+static_assert(sizeof(penumbra::FrameConstants) == 880 + 96 * penumbra::kMaxBeams + 16 &&
               offsetof(penumbra::FrameConstants, clusterCount) == 848);
 static_assert(sizeof(penumbra::DenseRotation) == 336);
 #endif

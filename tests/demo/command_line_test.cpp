@@ -40,6 +40,10 @@ TEST_F(DemoCommandLine, WrongUsageIsTwo)
                                          std::string("--receivers pixels"),
                                          std::string("--receivers pixel --device cpu-scalar"),
                                          "--receivers pixel --compare-kernels " + at("k.json"),
+                                         std::string("--beams 33"),
+                                         std::string("--beams 8 --device cpu-scalar"),
+                                         "--beams 8 --compare-kernels " + at("k.json"),
+                                         std::string("--sweep lights --beams 8"),
                                          std::string("--reference 3"),
                                          std::string("--what"),
                                          std::string("falling"),
@@ -129,6 +133,30 @@ TEST_F(DemoCommandLine, PixelReceiversAreMeasured)
         EXPECT_GT(reference["receivers"], 1000);
         EXPECT_LE(reference["receivers"], 70 * 50);
         EXPECT_LT(reference["rmseRelative"], 0.2);
+    }
+}
+
+// Beams shadow vertices and pixels alike, bring the picture nearer to the truth, and validation has
+// nothing to say.
+TEST_F(DemoCommandLine, BeamsAreMeasured)
+{
+    for (const std::string kind : {"vertex", "pixel"}) {
+        const auto errorWith = [&](const std::string& beams) {
+            const Outcome outcome =
+                run("--scene falling --environment studio --receivers " + kind + " --beams " +
+                    beams + " --frames 2 --size 70x50 --validate --reference 64 --out " + at(kind) +
+                    " --benchmark " + at("b.json"));
+            EXPECT_EQ(outcome.code, 0) << outcome.err;
+            const auto benchmark = nlohmann::json::parse(readText(folder / "b.json"));
+            EXPECT_EQ(benchmark["beams"], std::stoi(beams));
+            for (const char* pass : {"beam_maps", "beams"})
+                EXPECT_EQ(benchmark["gpuMs"].contains(pass), beams != "0") << pass;
+            const auto reference =
+                nlohmann::json::parse(readText(folder / kind / "reference.json"));
+            EXPECT_EQ(reference["beams"], std::stoi(beams));
+            return reference["rmseRelative"].get<double>();
+        };
+        EXPECT_LT(errorWith("8"), 0.7 * errorWith("0")) << kind;
     }
 }
 

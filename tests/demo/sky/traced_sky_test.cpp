@@ -122,5 +122,39 @@ TEST(TracedSky, IsTheLightThatTheFieldsHave)
     }
 }
 
+// With beams: what they leave in SH, and the rest of the map whole, which sums up to their light.
+TEST(TracedSky, SharesTheLightAmongFieldsAndBeams)
+{
+    DemoScene scene;
+    const AssetHandle day = scene.assets.addEnvironment(makeSky(64, 32, lopsided));
+    const AssetHandle dusk = scene.assets.addEnvironment(makeSky(32, 16, evening));
+    const std::vector<EnvironmentLight> lights = {{day, 0.7f, yaw(1.2f)}, {dusk, 0.4f, yaw(2)}};
+    for (const EnvironmentLight& light : lights)
+        scene.world.create(light);
+    const TracedSky traced = tracedSky(scene, 12);
+    EnvironmentLighting lighting(scene.assets, false, 12);
+    lighting.set(lights);
+    ASSERT_EQ(lighting.beams().size(), 12u);
+    float power = 0, wanted = 0;
+    constexpr std::uint32_t kCount = 1 << 14;
+    for (const glm::uvec2 p : makeSamplePoints(kCount)) {
+        const vec2 u = scramble(p, {3, 4});
+        const float y = 1 - 2 * u.y, ring = std::sqrt(1 - y * y);
+        const float azimuth = 2 * std::numbers::pi_v<float> * u.x;
+        const vec3 d(ring * std::cos(azimuth), y, ring * std::sin(azimuth));
+        vec3 fields(0);
+        for (int k = 0; k < 16; ++k)
+            fields += shBasis(d).c[k] * lighting.light()[static_cast<std::size_t>(k)];
+        const vec3 bright = traced.order4.evaluate(d).radiance - fields;
+        const vec3 whole = traced.maps.evaluate(d).radiance;
+        ASSERT_TRUE(glm::all(glm::greaterThan(bright, vec3(-1e-3f))));
+        ASSERT_TRUE(glm::all(glm::lessThan(bright, whole)));
+        power += bright.g * 4 * std::numbers::pi_v<float> / kCount;
+    }
+    for (const SkyBeam& beam : lighting.beams()) // across the beam: by the mean cosine of its disc
+        wanted += beam.irradiance.g / std::sqrt(1 - beam.halfAngle * beam.halfAngle / 2);
+    EXPECT_NEAR(power / wanted, 1, 0.01);
+}
+
 } // namespace
 } // namespace penumbra

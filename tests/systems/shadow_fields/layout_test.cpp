@@ -77,6 +77,12 @@ TEST(Layout, FrameConstants)
     EXPECT_SAME_OFFSET(frame, FrameConstants, backgroundIntensity);
     EXPECT_SAME_OFFSET(frame, FrameConstants, culls);
     EXPECT_SAME_OFFSET(frame, FrameConstants, skyIntensity);
+    EXPECT_SAME_OFFSET(frame, FrameConstants, beams);
+    EXPECT_SAME_OFFSET(frame, FrameConstants, beamCount);
+    const SpirvStruct beam = spirvStruct(shaderCode("beams.comp"), "GpuBeam");
+    EXPECT_SAME_OFFSET(beam, GpuBeam, direction);
+    EXPECT_SAME_OFFSET(beam, GpuBeam, irradiance);
+    EXPECT_SAME_OFFSET(beam, GpuBeam, size);
 }
 
 } // namespace
