@@ -4,7 +4,8 @@ set(PENUMBRA_ASSET_DIR ${PROJECT_BINARY_DIR}/assets)
 set(shape_dir ${CMAKE_CURRENT_BINARY_DIR}/shapes)
 set(assets "")
 
-# penumbra_demo_mesh(NAME SOURCE ARG…): bakes SOURCE to NAME.glb; ARG… go to assetc bake.
+# penumbra_demo_mesh(NAME SOURCE ARG…): bakes SOURCE to NAME.glb, with levels of detail for the shadow maps of beams;
+# ARG… go to assetc bake.
 function(penumbra_demo_mesh NAME SOURCE)
     set(output ${PENUMBRA_ASSET_DIR}/${NAME}.glb)
     add_custom_command(OUTPUT ${output}

@@ -35,6 +35,7 @@ float unblocked(uint beam, BeamPoint at)
             depth += there;
         }
     }
+    // Without a blocker these are the taps of the search once more, all open.
     const vec2 radius = beamRadius(frame.beams[beam], (at.depth - depth / max(blockers, 1.0)) * metres);
     float open = 0.0;
     for (uint tap = 0u; tap < kBeamTaps; ++tap) {
@@ -42,7 +43,7 @@ float unblocked(uint beam, BeamPoint at)
         if (!blocks(depthAt(beam, at.uv + offset), at, offset))
             open += 1.0;
     }
-    return blockers > 0.0 ? open / float(kBeamTaps) : 1.0;
+    return open / float(kBeamTaps);
 }
 
 // Phong's lobe, widened by the beam's disc as Gaussians on the sphere are: their variances along an axis, 1 / e and a
@@ -59,7 +60,7 @@ void main()
     const GpuInstance self = loadInstance(cluster.instance);
     const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x);
     const Receiver receiver = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
-    const float sharp = frame.literal == 0u && frame.mirrors != 0u ? skyLobeShare(receiver.glossExponent) : 0.0;
+    const float sharp = frame.mirrors != 0u ? skyLobeShare(receiver.glossExponent) : 0.0;
     const float gloss = receiver.glossFraction * (1.0 - sharp);
     const float diffuse = (1.0 - receiver.glossFraction) * 0.318309886;
     vec3 sum = vec3(0.0);

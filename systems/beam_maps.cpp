@@ -57,6 +57,10 @@ float largestCasterError(const SceneData& scene)
 // distance of what blocks says too much where the disc is wide (docs/decisions/0015).
 constexpr float kDiscShare = 0.5f;
 
+// Of a texel: how far receivers are lifted off their own surface in the map. Less makes acne, more
+// loses contacts (likewise).
+constexpr float kLift = 0.5f;
+
 constexpr float kTexel = 1.0f / static_cast<float>(kBeamMapSide);
 
 // Where a map lies along an axis: an empty texel on each side, and another for the step to whole
@@ -93,7 +97,7 @@ GpuBeam placeBeam(const SkyBeam& beam, std::span<const Sphere> casters, float ca
     out.depth = vec4(-d, height.high) / range;
     out.direction = vec4(d, kDiscShare * std::tan(beam.halfAngle));
     out.irradiance = vec4(beam.irradiance, range);
-    out.size = vec4(size, casterError + 0.5f * texel, std::tan(beam.halfAngle));
+    out.size = vec4(size, casterError + kLift * texel, std::tan(beam.halfAngle));
     return out;
 }
 

@@ -152,6 +152,7 @@ void recordBeamMaps(const GpuFrame& gpu, const FramePasses& passes, const GpuSce
                                .layerCount = 1,
                                .pDepthAttachment = &depth};
     vkCmdBeginRendering(gpu.cmd, &info);
+    const std::vector<CasterRun> casters = casterRuns(scene.data());
     const GpuSceneBuffers& b = scene.buffers();
     const VkBuffer buffers[] = {b.casterPositions.handle, b.instances.handle};
     const VkDeviceSize offsets[] = {0, 0};
@@ -168,7 +169,7 @@ void recordBeamMaps(const GpuFrame& gpu, const FramePasses& passes, const GpuSce
         vkCmdSetViewport(gpu.cmd, 0, 1, &viewport);
         vkCmdSetScissor(gpu.cmd, 0, 1, &area);
         bindAndPush(gpu.cmd, passes.beamMap, scene.slot(gpu.slot).set, beam);
-        for (const CasterRun& run : scene.casters()) {
+        for (const CasterRun& run : casters) {
             const MeshRange& mesh = scene.data().meshes[run.mesh];
             vkCmdDrawIndexed(gpu.cmd, mesh.casterIndexCount, run.instanceCount,
                              mesh.firstCasterIndex,

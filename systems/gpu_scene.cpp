@@ -215,7 +215,6 @@ Result<GpuScene> GpuScene::create(const Device& device, SceneData data, const Sk
     scene.m_beamSampler =
         createSampler(device, VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     scene.m_maxBeams = maxBeams;
-    scene.m_casters = casterRuns(data);
 
     scene.m_layout = createSetLayout(device, sceneBindings());
     scene.m_sets = DescriptorSets(device);
@@ -336,7 +335,7 @@ void GpuScene::writeFrame(std::uint32_t slotIndex, const FrameConstants& constan
     frame.instanceCount = static_cast<std::uint32_t>(m_data.instances.size());
     frame.lightCount = static_cast<std::uint32_t>(m_data.lights.size());
     placeBeams(m_data, m_beams, frame);
-    frame.mirrors = mirrors() ? 1 : 0;
+    frame.mirrors = frame.literal == 0 && mirrors() ? 1 : 0;
     std::memcpy(slot.frame.mapped, &frame, sizeof(frame));
     touchOutdated(frame);
     if (slot.skyLobesAt != m_skyLobesAt && mirrors())

@@ -72,7 +72,6 @@ public:
     void setBeams(std::span<const SkyBeam> beams);
     [[nodiscard]] const std::vector<SkyBeam>& beams() const { return m_beams; }
     [[nodiscard]] const Image& beamMaps() const { return m_beamMaps; }
-    [[nodiscard]] const std::vector<CasterRun>& casters() const { return m_casters; }
 
     // Writes what the frame of `slot` reads, which no frame in flight uses: constants, changed
     // rows, the maps of the background.
@@ -111,7 +110,6 @@ private:
     std::uint32_t m_maxBeams = 0;
     Image m_beamMaps;
     UniqueSampler m_beamSampler;
-    std::vector<CasterRun> m_casters;
     SkyLobes m_skyLobes;
     std::uint64_t m_skyLobesAt = 0;
 };

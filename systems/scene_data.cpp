@@ -26,7 +26,9 @@ void appendReceivers(const MeshAsset& mesh, MeshRange& range,
     }
 }
 
-constexpr float kMaxCasterError = 0.001f; // of the mesh's size
+// Of the mesh's size. Receivers are lifted by as much: what touches them within it casts no shadow
+// (docs/decisions/0015).
+constexpr float kMaxCasterError = 0.001f;
 
 // The coarsest level that a shadow map cannot tell from the mesh.
 void appendCaster(const MeshAsset& mesh, MeshRange& range, SceneData& scene)

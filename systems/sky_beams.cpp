@@ -116,12 +116,12 @@ std::vector<SkyBeam> medianCut(std::vector<BrightPixel> pixels, std::uint32_t co
 
 } // namespace
 
-SkySplit splitSky(const Environment& environment, std::uint32_t count)
+SkySplit splitSky(Environment environment, std::uint32_t count)
 {
     if (count == 0)
-        return {environment, {}, {}};
+        return {std::move(environment), {}, {}};
     const float limit = kBrightSky * environment.statistics.meanLuminance;
-    std::vector<vec3> rest = environment.map;
+    std::vector<vec3> rest = std::move(environment.map);
     std::vector<vec3> bright(rest.size(), vec3(0));
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const float value = luminance(rest[i]);

@@ -22,13 +22,14 @@ struct SkySplit {
     std::vector<SkyBeam> beams;
 };
 
-PENUMBRA_CONST float kBrightSky = 1.5f; // order 4 can carry the rest: docs/decisions/0015
+PENUMBRA_CONST float kBrightSky =
+    1.5f; // times the mean luminance; order 4 can carry the rest: docs/decisions/0015
 
 // Over ground, the mean is that of the whole map. At most `count` beams, in the map's axes: the
 // bright part is cut in two where the two halves have equal power, across its longest extent, and
 // again the part of the largest power times variance (median cut, after Debevec 2005, "A median cut
 // algorithm for light probe sampling"). A sky with nothing bright has none. Takes some 0.2 s for
 // the largest map.
-SkySplit splitSky(const Environment& environment, std::uint32_t count);
+SkySplit splitSky(Environment environment, std::uint32_t count);
 
 } // namespace penumbra

@@ -125,7 +125,8 @@ struct FrameConstants {
     float skyIntensity[kSkyMaps];
     GpuBeam beams[kMaxBeams];
     uint beamCount;
-    uint mirrors; // 1: sharp surfaces mirror the filtered sky, which holds the beams
+    uint mirrors; // 1: the combine kernel has sharp surfaces mirror the filtered sky, which holds
+                  // the beams
     uint padding0;
     uint padding1;
 };

@@ -73,6 +73,8 @@ protected:
             const GpuFrame frame = take(ring.beginFrame());
             recordFrame(frame, m_passes, gpu, constants, {.kernel = kernel}, targets);
             take(ring.endFrame());
+            if (i == 0 && m_ballInSecondFrame)
+                gpu.setInstance(1, *m_ballInSecondFrame);
         }
         take(ring.waitIdle());
         return take(readBackAs<vec4>(device(), gpu.buffers().radiance));
@@ -91,6 +93,7 @@ protected:
     FramePasses m_passes;
     AssetStore m_store;
     AssetHandle m_map;
+    std::optional<SceneInstance> m_ballInSecondFrame;
 };
 
 float blockedAngle(vec3 from, vec3 lamp)
@@ -182,6 +185,16 @@ TEST_F(SkyBeamsFrameTest, BluntGlossShowsTheLamp)
         });
         EXPECT_LT(worst, 0.15f * brightest + 0.02f) << exponent;
     }
+}
+
+TEST_F(SkyBeamsFrameTest, ABallThatStopsBlockingLosesItsShadow)
+{
+    SceneData alone = sceneOf(true);
+    alone.instances[1].occluder.reset();
+    const std::vector<vec4> without = draw(true, 16, vec4(0, 0, 0, 1), Kernel::Exact, &alone);
+    EXPECT_NE(draw(true, 16), without);
+    m_ballInSecondFrame = alone.instances[1];
+    EXPECT_EQ(draw(true, 16), without);
 }
 
 TEST_F(SkyBeamsFrameTest, FramesRepeatBitByBit)
