@@ -74,6 +74,11 @@ ShadowField readFieldHead(const JsonReader& extension)
         extension.refuse(fmt::format("has encoding \"{}\", known is {}", encoding, kFieldEncoding));
     field.center = readVec3(extension.member("center"));
     field.radius = extension.number("radius", 0, kAnyFloat);
+    if (extension.has("inscribedSphere")) {
+        const JsonReader ball = extension.member("inscribedSphere");
+        field.inscribed =
+            vec4(readVec3(ball.member("center")), ball.number("radius", 0, kAnyFloat));
+    }
     field.innerRadius = extension.number("innerRadius", 0, kAnyFloat);
     field.outerRadius = extension.number("outerRadius", 0, kAnyFloat);
     field.channels = static_cast<std::uint32_t>(extension.count("channels", 3));

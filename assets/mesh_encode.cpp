@@ -66,6 +66,9 @@ json fieldJson(const ShadowField& field)
                    {"directions", field.directions},
                    {"encoding", kFieldEncoding},
                    {"byteLength", field.texels.size()}};
+    if (field.inscribed.w > 0)
+        result["inscribedSphere"] = {{"center", vectorJson(vec3(field.inscribed))},
+                                     {"radius", field.inscribed.w}};
     if (field.errors)
         result["errors"] = errorsJson(*field.errors, field.kind);
     return result;

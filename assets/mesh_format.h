@@ -12,7 +12,7 @@ namespace penumbra {
 constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 constexpr const char* kFieldExtension = "PENUMBRA_shadow_field";
 constexpr const char* kLodExtension = "MSFT_lod";
-constexpr const char* kFormatVersion = "1.2"; // readers refuse another major
+constexpr const char* kFormatVersion = "1.3"; // readers refuse another major
 constexpr int kFormatMajor = 1;
 // 256 submeshes in each of 5 levels take less than 2 MiB.
 constexpr std::size_t kMaxMeshJsonBytes = 4 << 20;

@@ -129,6 +129,13 @@ Result<void> validateFieldHead(const ShadowField& field)
     if (!inRange(field.radius, kMinFieldRadius, kMaxCoordinate))
         return Error{fmt::format("field: radius {} m, allowed {} to {}", field.radius,
                                  kMinFieldRadius, kMaxCoordinate)};
+    // A hair of room for the rounding of its centre.
+    if (const vec4 ball = field.inscribed;
+        !(ball.w >= 0) ||
+        (ball.w > 0 && !(length(vec3(ball) - field.center) + ball.w <= 1.001f * field.radius)))
+        return Error{fmt::format("field: inscribed sphere of radius {} m at {}, {}, {}, not within "
+                                 "the bounding sphere",
+                                 ball.w, ball.x, ball.y, ball.z)};
     if (!inRange(field.innerRadius, 1e-3f, 1e3f) || !inRange(field.outerRadius, 1e-3f, 1e3f) ||
         field.innerRadius >= field.outerRadius)
         return Error{fmt::format("field: shells from {} to {} bounding radii, allowed 0.001 < 1000",

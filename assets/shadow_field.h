@@ -47,13 +47,15 @@ struct FieldErrors {
 
 struct ShadowField {
     FieldKind kind = FieldKind::Occlusion;
-    std::uint32_t channels = 1;            // 1 for occlusion, 3 (RGB) for radiance
-    std::uint32_t frames = 1;              // n for a video texture
-    vec3 center{0};                        // of the bounding sphere, object space, metres
-    float radius = 1;                      // of the bounding sphere, metres
-    float innerRadius = 0.2f;              // first shell, bounding radii
-    float outerRadius = 8.0f;              // last shell, bounding radii
-    std::array<float, 4> bandScale{};      // K of band 0..3
+    std::uint32_t channels = 1;       // 1 for occlusion, 3 (RGB) for radiance
+    std::uint32_t frames = 1;         // n for a video texture
+    vec3 center{0};                   // of the bounding sphere, object space, metres
+    float radius = 1;                 // of the bounding sphere, metres
+    vec4 inscribed{0};                // of occlusion: a ball in the object: centre, radius, object
+                                      // space, metres; radius 0: none
+    float innerRadius = 0.2f;         // first shell, bounding radii
+    float outerRadius = 8.0f;         // last shell, bounding radii
+    std::array<float, 4> bandScale{}; // K of band 0..3
     std::vector<std::uint16_t> shellSides; // [shellCount] grid side, 2^k + 1; 0: left out
     std::vector<std::uint8_t> texels;      // [frames][channels][shell][y][x][16], inner shell first
     std::uint32_t directions = 0;          // directions per sample of the bake

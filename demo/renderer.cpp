@@ -17,7 +17,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const Device& device, DemoSce
     Result<SceneData> data = extractScene(scene.world, scene.assets);
     if (!data)
         return scene.path.empty() ? data.error() : fail(data.error(), scene.path.string());
-    Result<FramePasses> passes = createFramePasses(device, !data->lights.empty());
+    Result<FramePasses> passes = createFramePasses(device, sceneFeatures(*data));
     if (!passes)
         return passes.error();
     renderer->m_passes = std::move(*passes);

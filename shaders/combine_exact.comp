@@ -26,6 +26,7 @@ layout(local_size_x_id = 1) in;                    // kClusterReceivers / kRecei
 layout(constant_id = 2) const float kSelfScale = 1.0;
 layout(constant_id = 3) const bool kLocalLights = true;
 layout(constant_id = 4) const bool kMirrors = false; // some surface mirrors the filtered sky
+layout(constant_id = 5) const bool kHiders = true;   // some occluder hides others
 
 FieldTetrahedron tetrahedronAt(FieldEntity entity, vec3 position, out FieldCell cell)
 {
@@ -69,7 +70,9 @@ vec3 lightThrough(ShNodal transfer, FieldEntity light, Receiver lit)
 uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kListStride + at)).x; }
 
 Receiver receiver[kReceivers];
-ShNodal visibility[kReceivers];
+ShNodal visibility[kReceivers], through[kReceivers]; // `through`: with what stands before a light
+float seen[kReceivers];
+vec3 sum[kReceivers];
 mat3 axes; // object from world, of the receivers, without scale: where the nodes lie
 uint firstSkyNode;
 
@@ -77,34 +80,65 @@ Receiver inObject(uint v) { return turnReceiver(axes, receiver[v]); }
 
 vec3 skyNode(int n) { return texelFetch(skyNodeTexels, int(firstSkyNode) + n).rgb; }
 
-float risen(vec4 sphere, uint v)
+// Sets `seen`: what inscribed balls leave of an entity for each receiver. `hiders`: where in the lists its hiders stand.
+void look(vec4 sphere, uint hiders)
 {
-    return horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
+    if (!kHiders)
+        return;
+    [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+        seen[v] = 1.0;
+    for (uint bits = listed(hiders); bits != 0u; bits &= bits - 1u) {
+        const uint hider = listed(kListOccluders + uint(findLSB(bits)));
+        const vec4 ball = loadInstance(entryRow(hider)).inscribed;
+        [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+            seen[v] *= mix(1.0, shadowWeight(receiver[v].position, ball, sphere), entryShare(hider));
+    }
 }
 
-void occlude(uint entry)
+// How much an entity counts for a receiver, after look().
+float entityWeight(uint entry, vec4 sphere, uint v)
 {
+    return (kHiders ? seen[v] : 1.0) * entryShare(entry) *
+           horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
+}
+
+void occlude(uint place)
+{
+    const uint entry = listed(kListOccluders + place);
     const GpuInstance occluder = loadInstance(entryRow(entry));
+    look(occluder.sphere, kListHiders + place);
     const FieldEntity entity = instanceFieldIn(axes, occluder);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-        visibility[v] =
-            shMultiply(visibility[v],
-                       occlusion(entity, receiver[v].position, entryShare(entry) * risen(occluder.sphere, v)));
+        visibility[v] = shMultiply(visibility[v], occlusion(entity, receiver[v].position,
+                                                            entityWeight(entry, occluder.sphere, v)));
 }
 
-// `possible`: occluders that `visibility` has not got yet and that may stand before the light, as bits.
-vec3 localLight(GpuInstance light, FieldEntity field, float share, uint possible, uint v)
+// Adds the light at `at` of the lists to `sum`.
+void localLight(uint at)
 {
-    ShNodal through = visibility[v];
-    for (uint bits = possible; bits != 0u; bits &= bits - 1u) {
-        const uint entry = listed(kListOccluders + uint(findLSB(bits)));
+    const uint entry = listed(at);
+    const GpuInstance light = loadInstance(entryRow(entry));
+    const FieldEntity field = instanceFieldIn(axes, light);
+    [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+        through[v] = visibility[v];
+    // Occluders that `visibility` has not got yet and that may stand before the light.
+    for (uint bits = listed(at + 2u); bits != 0u; bits &= bits - 1u) {
+        const uint place = uint(findLSB(bits));
+        const uint entry = listed(kListOccluders + place);
         const GpuInstance occluder = loadInstance(entryRow(entry));
-        const float weight = entryShare(entry) * risen(occluder.sphere, v) *
-                             orderWeight(occluder.sphere, light.sphere, receiver[v].position);
-        through = shMultiply(through, occlusion(instanceFieldIn(axes, occluder), receiver[v].position, weight));
+        look(occluder.sphere, kListHiders + place);
+        const FieldEntity entity = instanceFieldIn(axes, occluder);
+        [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
+            const vec3 position = receiver[v].position;
+            const float weight =
+                entityWeight(entry, occluder.sphere, v) * orderWeight(occluder.sphere, light.sphere, position);
+            through[v] = shMultiply(through[v], occlusion(entity, position, weight));
+        }
     }
-    return share * risen(light.sphere, v) * light.material.rgb *
-           lightThrough(transferNodal(through, inObject(v)), field, receiver[v]);
+    look(light.sphere, at + 3u);
+    [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
+        sum[v] += entityWeight(entry, light.sphere, v) * light.material.rgb *
+                  lightThrough(transferNodal(through[v], inObject(v)), field, receiver[v]);
 }
 
 vec4 lobeTexel(uint at) { return texelFetch(skyLobeTexels, int(at)); }
@@ -145,7 +179,6 @@ void main()
     const GpuInstance self = loadInstance(cluster.instance);
     axes = objectFromWorld(self);
     firstSkyNode = kSkyNodes * cluster.instance;
-    vec3 sum[kReceivers];
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
         const int texel = 2 * int(cluster.firstReceiver + gl_LocalInvocationID.x + v * lanes);
         receiver[v] = makeReceiver(self, texelFetch(receiverTexels, texel), frame.eye.xyz);
@@ -157,18 +190,14 @@ void main()
     if (kLocalLights) {
         const uint lights = listed(1u);
         for (uint l = 0u; l < lights; ++l) {
-            const uint at = kListLights + 3u * l;
+            const uint at = kListLights + kListLightStride * l;
             for (const uint before = listed(at + 1u); next < before; ++next)
-                occlude(listed(kListOccluders + next));
-            const uint entry = listed(at), possible = listed(at + 2u);
-            const GpuInstance light = loadInstance(entryRow(entry));
-            const FieldEntity field = instanceFieldIn(axes, light);
-            [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-                sum[v] += localLight(light, field, entryShare(entry), possible, v);
+                occlude(next);
+            localLight(at);
         }
     }
     for (; next < occluders; ++next)
-        occlude(listed(kListOccluders + next));
+        occlude(next);
 
     const bool sharp = kMirrors && mirrorsSky(self.material.w, self.material1.x);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {

@@ -17,6 +17,7 @@
 layout(local_size_x = kClusterReceivers) in;
 layout(constant_id = 2) const float kSelfScale = 1.0;
 layout(constant_id = 3) const bool kLocalLights = true;
+layout(constant_id = 4) const bool kHiders = true; // some occluder hides others
 
 uint listed(uint at) { return lists[gl_WorkGroupID.x * kListStride + at]; }
 
@@ -36,26 +37,37 @@ Sh4 sampleField(FieldCell cell, FieldGrid grid, uint channel)
     return sum;
 }
 
-Sh4 occlude(Sh4 transfer, uint entry, Receiver receiver, float order)
+// How much an entity counts for the receiver; `hiders`: where in the lists its hiders stand.
+float entityWeight(uint entry, uint hiders, Receiver receiver)
 {
+    const vec4 sphere = instances[entryRow(entry)].sphere;
+    float weight = entryShare(entry) * horizonWeight(receiver.normal, sphere.xyz - receiver.position, sphere.w);
+    for (uint bits = kHiders ? listed(hiders) : 0u; bits != 0u; bits &= bits - 1u) {
+        const uint hider = listed(kListOccluders + uint(findLSB(bits)));
+        const vec4 ball = instances[entryRow(hider)].inscribed;
+        weight *= mix(1.0, shadowWeight(receiver.position, ball, sphere), entryShare(hider));
+    }
+    return weight;
+}
+
+Sh4 occlude(Sh4 transfer, uint place, Receiver receiver, float order)
+{
+    const uint entry = listed(kListOccluders + place);
     const uint occluder = entryRow(entry);
     const FieldEntity entity = instanceField(instances[occluder]);
     const FieldCell cell = fieldCell(fieldPoint(entity, receiver.position), entity.grid);
-    const float weight =
-        order * entryShare(entry) *
-        horizonWeight(receiver.normal, entity.center - receiver.position, instances[occluder].sphere.w);
+    const float weight = order * entityWeight(entry, kListHiders + place, receiver);
     const Sh4 visibility =
         fieldVisibility(sampleField(cell, entity.grid, 0u), entity.bandScale * (weight * cell.decay));
     return shProduct(shRotateDense(visibility, denseRotations[occluder]), transfer);
 }
 
-vec3 lightThrough(Sh4 transfer, uint entry, Receiver receiver)
+vec3 lightThrough(Sh4 transfer, uint at, Receiver receiver)
 {
-    const uint light = entryRow(entry);
+    const uint light = entryRow(listed(at));
     const FieldEntity entity = instanceField(instances[light]);
     const FieldCell cell = fieldCell(fieldPoint(entity, receiver.position), entity.grid);
-    const float weight = entryShare(entry) * horizonWeight(receiver.normal, entity.center - receiver.position,
-                                                           instances[light].sphere.w);
+    const float weight = entityWeight(listed(at), at + 3u, receiver);
     vec3 b;
     [[unroll]] for (uint channel = 0u; channel < 3u; ++channel) {
         const Sh4 source =
@@ -79,23 +91,22 @@ void main()
     if (kLocalLights) {
         const uint lights = listed(1u);
         for (uint l = 0u; l < lights; ++l) {
-            const uint at = kListLights + 3u * l;
-            const uint light = listed(at);
-            const vec4 lightSphere = instances[entryRow(light)].sphere;
+            const uint at = kListLights + kListLightStride * l;
+            const vec4 lightSphere = instances[entryRow(listed(at))].sphere;
             for (const uint before = listed(at + 1u); next < before; ++next)
-                transfer = occlude(transfer, listed(kListOccluders + next), receiver, 1.0);
+                transfer = occlude(transfer, next, receiver, 1.0);
             Sh4 through = transfer;
             for (uint bits = listed(at + 2u); bits != 0u; bits &= bits - 1u) {
-                const uint occluder = listed(kListOccluders + uint(findLSB(bits)));
-                through = occlude(
-                    through, occluder, receiver,
-                    orderWeight(instances[entryRow(occluder)].sphere, lightSphere, receiver.position));
+                const uint place = uint(findLSB(bits));
+                const uint occluder = entryRow(listed(kListOccluders + place));
+                through = occlude(through, place, receiver,
+                                  orderWeight(instances[occluder].sphere, lightSphere, receiver.position));
             }
-            b += lightThrough(through, light, receiver);
+            b += lightThrough(through, at, receiver);
         }
     }
     for (const uint occluders = listed(0u); next < occluders; ++next)
-        transfer = occlude(transfer, listed(kListOccluders + next), receiver, 1.0);
+        transfer = occlude(transfer, next, receiver, 1.0);
     [[unroll]] for (int k = 0; k < 16; ++k)
         b += transfer.c[k] * frame.light[k].rgb;
     radiance[cluster.firstRadiance + gl_LocalInvocationID.x] = vec4(self.material.rgb * b + self.emission.rgb, 1.0);

@@ -4,8 +4,8 @@
 //   reads   visible [cull.combineGroups[0]], clusters, bounds, instances
 //   writes  lists [visible], cull.pairs, cull.dropped
 // Drops an occluder or light that is the receiver itself (its self-visibility says more; a light does not light its own
-// surface), whose influence ends before the cluster, or whose sphere lies under the horizon of every receiver (Zhou et
-// al. 2005 section 4.2). Near and far: shaders/shared/order.h, taken from the cluster's centre, once per cluster where
+// surface), whose influence ends before the cluster, whose sphere lies under the horizon of every receiver, or in the
+// shadow that a ball inside an occluder casts from every one (Zhou et al. 2005 section 4.2). Near and far: shaders/shared/order.h, taken from the cluster's centre, once per cluster where
 // the paper sorts per vertex; equal ones keep instance order. Where there are more than fit, the least important ones are
 // left out, and those hardly more important count in part, so that none appears or goes at once.
 // An insertion sort in private memory: one lane per cluster beats shared memory and barriers on lavapipe 20 times.
@@ -17,6 +17,7 @@
 layout(local_size_x = kSortGroup) in;
 
 layout(constant_id = 3) const bool kLocalLights = true;
+layout(constant_id = 4) const bool kHiders = true; // some occluder hides others
 
 // Two lists near to far, occluders and lights, in private arrays: as parameters they would be copied.
 struct EntityList {
@@ -25,6 +26,7 @@ struct EntityList {
 };
 float keys[kMaxClusterOccluders + kMaxClusterLights], importances[kMaxClusterOccluders + kMaxClusterLights];
 uint rows[kMaxClusterOccluders + kMaxClusterLights];
+uint hiders[kMaxClusterOccluders + kMaxClusterLights]; // as bits: occluders that hide it from some receiver
 uint dropped = 0u;
 
 void move(uint from, uint to)
@@ -55,6 +57,48 @@ void insert(inout EntityList list, float key, float importance, uint row)
     keys[at] = key;
     importances[at] = importance;
     rows[at] = row;
+}
+
+// Finds what of a list lies in the shadow of an occluder's inscribed ball: sets `hiders`; returns, as bits, what lies
+// there for the whole cluster.
+uint findHidden(EntityList list, EntityList occluders, vec4 cluster)
+{
+    uint balls = 0u;
+    for (uint j = 0u; j < occluders.count; ++j)
+        balls |= loadInstance(rows[j]).inscribed.w > 0.0 ? 1u << j : 0u;
+    for (uint i = 0u; i < list.count; ++i)
+        hiders[list.first + i] = 0u;
+    uint hidden = 0u;
+    for (; balls != 0u; balls &= balls - 1u) {
+        const uint j = uint(findLSB(balls));
+        const ClusterShadow shadow = clusterShadow(cluster, loadInstance(rows[j]).inscribed);
+        const bool whole = entityShare(importances[j], occluders.least) == 1.0;
+        for (uint i = 0u; i < list.count; ++i) {
+            const GpuInstance g = loadInstance(rows[list.first + i]);
+            const ShadowBounds bounds = shadowBounds(shadow, g.sphere.xyz - cluster.xyz, g.sphere.w);
+            // A light's own surface does not hide it.
+            const bool apart = rows[list.first + i] != rows[j] && uint(int(g.material1.z)) != rows[j] + 1u;
+            hiders[list.first + i] |= apart && bounds.touched ? 1u << j : 0u;
+            hidden |= apart && whole && bounds.hidden ? 1u << i : 0u;
+        }
+    }
+    return (frame.culls & kCullHidden) != 0u ? hidden : 0u;
+}
+
+// In the list that is written, where the hidden ones come last.
+uint placeOf(uint i, uint count, uint hidden)
+{
+    const uint below = (1u << i) - 1u;
+    return (hidden >> i & 1u) == 0u ? uint(bitCount(~hidden & below))
+                                    : count - uint(bitCount(hidden)) + uint(bitCount(hidden & below));
+}
+
+uint placesOf(uint bits, uint count, uint hidden)
+{
+    uint places = 0u;
+    for (; bits != 0u; bits &= bits - 1u)
+        places |= 1u << placeOf(uint(findLSB(bits)), count, hidden);
+    return places;
 }
 
 uint entry(EntityList list, uint i)
@@ -96,28 +140,41 @@ void main()
         }
     }
 
+    const vec4 sphere = vec4(center, radius);
+    const uint hidden = kHiders ? findHidden(occluders, occluders, sphere) : 0u;
+    const uint hiddenLights = kHiders ? findHidden(lights, occluders, sphere) : 0u;
+    const uint kept = occluders.count - uint(bitCount(hidden));
+
     const uint first = slot * kListStride;
-    lists[first] = occluders.count;
-    lists[first + 1u] = lights.count;
-    for (uint i = 0u; i < occluders.count; ++i)
-        lists[first + kListOccluders + i] = entry(occluders, i);
-    uint before = occluders.count; // never more than for the next farther light, so that kernels need one product
+    lists[first] = kept;
+    lists[first + 1u] = lights.count - uint(bitCount(hiddenLights));
+    for (uint i = 0u; i < occluders.count; ++i) {
+        const uint place = placeOf(i, occluders.count, hidden);
+        lists[first + kListOccluders + place] = entry(occluders, i);
+        if (kHiders)
+            lists[first + kListHiders + place] = placesOf(hiders[i], occluders.count, hidden);
+    }
+    uint before = kept; // never more than for the next farther light, so that kernels need one product
     for (uint l = lights.count; l-- > 0u;) {
         const GpuInstance g = loadInstance(rows[lights.first + l]);
         uint certain = 0u, possible = 0u;
         for (uint i = 0u; i < occluders.count; ++i) {
+            const uint place = placeOf(i, occluders.count, hidden);
             const bool own = rows[i] + 1u == uint(int(g.material1.z));
             const float weight =
-                own ? 0.0 : orderWeightAround(loadInstance(rows[i]).sphere, g.sphere, center, radius);
-            possible |= weight > 0.0 ? 1u << i : 0u;
-            certain += certain == i && weight == 1.0 ? 1u : 0u;
+                own || place >= kept ? 0.0 : orderWeightAround(loadInstance(rows[i]).sphere, g.sphere, center, radius);
+            possible |= weight > 0.0 ? 1u << place : 0u;
+            certain += certain == place && weight == 1.0 ? 1u : 0u;
         }
         before = min(before, certain);
-        lists[first + kListLights + 3u * l] = entry(lights, l);
-        lists[first + kListLights + 3u * l + 1u] = before;
-        lists[first + kListLights + 3u * l + 2u] = before < 32u ? possible >> before << before : 0u;
+        const uint at = first + kListLights + kListLightStride * placeOf(l, lights.count, hiddenLights);
+        lists[at] = entry(lights, l);
+        lists[at + 1u] = before;
+        lists[at + 2u] = before < 32u ? possible >> before << before : 0u;
+        if (kHiders)
+            lists[at + 3u] = placesOf(hiders[lights.first + l], occluders.count, hidden);
     }
-    atomicAdd(cull.pairs, occluders.count);
+    atomicAdd(cull.pairs, kept);
     if (dropped > 0u)
         atomicAdd(cull.dropped, dropped);
 }

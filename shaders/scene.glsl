@@ -44,5 +44,6 @@ GpuInstance loadInstance(uint instance)
     g.material = texelFetch(instanceTexels, row + 8);
     g.material1 = texelFetch(instanceTexels, row + 9);
     g.emission = texelFetch(instanceTexels, row + 10);
+    g.inscribed = texelFetch(instanceTexels, row + 11);
     return g; // rows that the caller does not use are not fetched: the compiler drops them
 }

@@ -4,6 +4,7 @@
 #include "runtime/vk/gpu_zone.h"
 #include "systems/draw_instances.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 
@@ -220,12 +221,17 @@ void recordPost(const GpuFrame& gpu, const FramePasses& passes, const FrameTarge
                     kCopySource);
 }
 
-Result<FramePasses> createFramePasses(const Device& device, bool localLights)
+SceneFeatures sceneFeatures(const SceneData& scene)
+{
+    return {!scene.lights.empty(), std::count(scene.hiders.begin(), scene.hiders.end(), true) > 0};
+}
+
+Result<FramePasses> createFramePasses(const Device& device, SceneFeatures features)
 {
     const std::vector<Binding> scene(sceneBindings().begin(), sceneBindings().end());
     const std::uint32_t perInvocation = receiversPerInvocation(device);
     const auto selfScale = std::bit_cast<std::uint32_t>(kSelfVisibilityScale);
-    const std::uint32_t lights = localLights ? 1 : 0;
+    const std::uint32_t lights = features.lights ? 1 : 0, hiders = features.hiders ? 1 : 0;
 
     FramePasses passes;
     Result<void> failed;
@@ -250,18 +256,19 @@ Result<FramePasses> createFramePasses(const Device& device, bool localLights)
     compute(passes.instanceUpdate,
             {.shader = "instance_update.comp", .bindings = scene, .pushBytes = 4});
     compute(passes.clusterCull, {.shader = "cluster_cull.comp", .bindings = scene});
-    compute(passes.entitySort,
-            {.shader = "entity_sort.comp", .bindings = scene, .constants = {0, 0, 0, lights}});
+    compute(
+        passes.entitySort,
+        {.shader = "entity_sort.comp", .bindings = scene, .constants = {0, 0, 0, lights, hiders}});
     compute(passes.combineLiteral, {.shader = "combine_literal.comp",
                                     .bindings = scene,
-                                    .constants = {0, 0, selfScale, lights}});
+                                    .constants = {0, 0, selfScale, lights, hiders}});
     // On lavapipe a branch costs what is behind it, whether taken or not: 3 times the whole kernel.
     for (const std::uint32_t mirrors : {0u, 1u})
         compute(mirrors == 0 ? passes.combineExact : passes.combineMirrors,
                 {.shader = "combine_exact.comp",
                  .bindings = scene,
                  .constants = {perInvocation, kClusterReceivers / perInvocation, selfScale, lights,
-                               mirrors}});
+                               mirrors, hiders}});
     compute(passes.beams, {.shader = "beams.comp", .bindings = scene});
     compute(passes.post, {.shader = "post.comp",
                           .bindings = {{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},

@@ -29,8 +29,13 @@ struct FramePasses {
         return kernel == Kernel::Literal ? combineLiteral : mirrors ? combineMirrors : combineExact;
     }
 };
-// `localLights`: kernels for scenes with lights of their own; without, they are smaller and faster.
-Result<FramePasses> createFramePasses(const Device& device, bool localLights);
+// What a scene asks of its passes: without, they are smaller and faster.
+struct SceneFeatures {
+    bool lights = false; // of its own
+    bool hiders = false; // SceneData::hiders
+};
+SceneFeatures sceneFeatures(const SceneData& scene);
+Result<FramePasses> createFramePasses(const Device& device, SceneFeatures features);
 
 // Targets of one size.
 struct FrameTargets {

@@ -60,6 +60,7 @@ void appendField(const ShadowField& field, SceneData& scene)
     input.radius = field.radius;
     input.bandScale =
         vec4(field.bandScale[0], field.bandScale[1], field.bandScale[2], field.bandScale[3]);
+    input.inscribed = field.inscribed;
     input.firstSample = static_cast<std::uint32_t>(scene.fieldSamples.size());
     input.side = side;
     input.shells = static_cast<std::uint32_t>(field.shellSides.size());
@@ -112,6 +113,35 @@ void checkNames(const SceneData& scene)
                         "a light shines by asset {}, which has no radiance field", light.asset);
 }
 
+// How large a ball must be to hide others, compared with the usual entity: smaller ones hide next
+// to nothing, and would only cost. Balls among their like are large enough (docs/decisions/0011).
+constexpr float kHiderSize = 0.9f;
+
+// Which instances hide others: [instances].
+std::vector<bool> findHiders(const SceneData& scene)
+{
+    std::vector<float> radii;
+    const auto radius = [&](std::uint32_t asset, float scale) {
+        return scale * scene.fields[scene.meshes[asset].field].radius;
+    };
+    for (const SceneInstance& instance : scene.instances)
+        if (instance.occluder)
+            radii.push_back(radius(*instance.occluder, instance.scale));
+    for (const SceneLight& light : scene.lights)
+        radii.push_back(radius(light.asset, light.scale));
+    std::vector<bool> hiders(scene.instances.size());
+    if (radii.empty())
+        return hiders;
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>((radii.size() - 1) / 2);
+    std::nth_element(radii.begin(), middle, radii.end());
+    for (std::size_t i = 0; i < hiders.size(); ++i)
+        if (const SceneInstance& instance = scene.instances[i]; instance.occluder) {
+            const FieldInput& field = scene.fields[scene.meshes[*instance.occluder].field];
+            hiders[i] = instance.scale * field.inscribed.w >= kHiderSize * *middle;
+        }
+    return hiders;
+}
+
 } // namespace
 
 SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
@@ -142,13 +172,14 @@ SceneData buildSceneData(std::span<const MeshAsset* const> meshes,
         scene.meshes.push_back(range);
     }
     if (scene.fields.empty()) { // a scene without occluders still binds its buffers
-        scene.fields.push_back({vec3(0), 1, vec4(0), 0, 2, 2, 0.2f, 8.0f, 0, 0, 0});
+        scene.fields.push_back({vec3(0), 1, vec4(0), vec4(0), 0, 2, 2, 0.2f, 8.0f, 0, 0, 0});
         scene.fieldSamples.assign(8, uvec4(0x80808080));
     }
 
     scene.instances = std::move(instances);
     scene.lights = std::move(lights);
     checkNames(scene);
+    scene.hiders = findHiders(scene);
     scene.firstDraw.push_back(0);
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const MeshRange& mesh = scene.meshes[scene.instances[i].mesh];
@@ -193,6 +224,7 @@ InstanceInput rowInput(const SceneData& scene, std::uint32_t row)
     input.drawCount = drawCount(mesh);
     if (instance.occluder)
         input.field = scene.meshes[*instance.occluder].field;
+    input.hides = scene.hiders[row] ? 1 : 0;
     return input;
 }
 

@@ -66,6 +66,8 @@ struct SceneData {
 
     std::vector<SceneInstance> instances;
     std::vector<SceneLight> lights;
+    // [instanceCount] whose inscribed ball hides others: the large ones, by their first scale
+    std::vector<bool> hiders;
     std::vector<SceneCluster> clusters; // [sum over instances of clusterCount]
     std::vector<std::uint32_t>
         firstRadiance; // [instanceCount] of the instance's receivers in the radiance buffer

@@ -4,6 +4,7 @@
 
 #include "assetc/bake/directions.h"
 #include "assetc/bake/fill_inside.h"
+#include "assetc/bake/inscribed_sphere.h"
 #include "assetc/bake/point_blocks.h"
 #include "assetc/bake/target_clones.h"
 #include "assetc/embree_scene.h"
@@ -283,20 +284,20 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
         accumulate(lines, directions, first, count, surface);
         progress.step(count);
     }
-    if (options.field) {
-        const EmbreeScene scene(positions, indices);
-        traceBeside(scene, field, directions, pixel, samples);
-        traceBeside(scene, field, directions, pixel, offGrid);
-    }
-
     for (const Sh4& blocked : surface.blocked)
         result.selfVisibility.push_back(quantiseSelfVisibility(blocked));
+    if (!options.field)
+        return result;
+
+    const EmbreeScene scene(positions, indices);
+    traceBeside(scene, field, directions, pixel, samples);
+    traceBeside(scene, field, directions, pixel, offGrid);
     result.field.nodes.resize(node.size());
     for (std::size_t i = 0; i < node.size(); ++i)
         for (std::size_t k = 0; k < 16; ++k)
             result.field.nodes[node[i]].c[k] = -samples.blocked[i].c[k];
-    if (options.field)
-        fillInside(result.field);
+    fillInside(result.field);
+    field.inscribed = inscribedSphere(scene, result.field);
     readProbes(offGrid, result.probes);
     return result;
 }

@@ -78,7 +78,9 @@ public:
                             .above(origin, receiver.normal, m_points, shift);
         std::vector<Sh4> traced, plain, rounded; // [occluder] visibility, world
         std::vector<float> weights;
-        for (const std::uint32_t entry : chosen.cluster->occluders) {
+        const ClusterEntities& entities = *chosen.cluster;
+        for (std::size_t place = 0; place < entities.occluders.size(); ++place) {
+            const std::uint32_t entry = entities.occluders[place];
             const std::uint32_t row = entryRow(entry);
             const GpuInstance& g = m_in.rows.instances[row];
             const PointVisibility& object = m_objects.at({row, *m_in.data.instances[row].occluder});
@@ -92,9 +94,8 @@ public:
             };
             plain.push_back(world(nodes.plain));
             rounded.push_back(world(nodes.rounded));
-            weights.push_back(entryShare(entry) * horizonWeight(receiver.normal,
-                                                                vec3(g.sphere) - receiver.position,
-                                                                g.sphere.w));
+            weights.push_back(entityWeight(m_in.rows, entities, entry, entities.hiders[place],
+                                           receiver.position, receiver.normal));
         }
         const Sh4 ownRounded = roundedOwn(own, worldFromObject);
 

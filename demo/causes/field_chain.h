@@ -5,8 +5,8 @@
 //                      traced here, multiplied direction by direction. (The ground is left to the
 //                      light, docs/decisions/0002.)
 //   productTruncation  the same multiplied as the kernel does: 32 nodes, or tripling coefficients;
-//                      lobes of few bands, occluders faded out under the horizon and at the edge of
-//                      full lists
+//                      lobes of few bands, occluders faded out under the horizon, behind others and
+//                      at the edge of full lists
 //   fieldSampling      visibility interpolated between the nodes of the fields' grids, traced
 //   there,
 //                      and faded out over the last shell

@@ -9,7 +9,7 @@ namespace penumbra {
 Result<FieldCombiner> FieldCombiner::create(const Device& device, SceneData data)
 {
     FieldCombiner combiner(device);
-    Result<FramePasses> passes = createFramePasses(device, !data.lights.empty());
+    Result<FramePasses> passes = createFramePasses(device, sceneFeatures(data));
     if (!passes)
         return passes.error();
     combiner.m_passes = std::move(*passes);

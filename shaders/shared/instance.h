@@ -15,13 +15,17 @@ PENUMBRA_CONST uint kMaxClusterOccluders =
     32u; // per cluster; the least important ones beyond that are dropped and counted
 PENUMBRA_CONST uint kMaxClusterLights = 16u; // local lights per cluster; likewise
 // What pass entity_sort writes per visible cluster: counts of occluders and lights; entries of the
-// occluders, near to far; of each light, near to far, its entry, how many leading occluders stand
-// before it at every receiver, and which of the others may, as bits.
+// occluders, near to far, and after them those that were dropped as hidden, which still hide
+// others; of each occluder, which ones may hide it, as bits of their places; of each light, near to
+// far, its entry, how many leading occluders stand before it at every receiver, which of the others
+// may, and which may hide it. Hiders are there in scenes that have some.
 PENUMBRA_CONST uint kListOccluders = 2u;
-PENUMBRA_CONST uint kListLights = kListOccluders + kMaxClusterOccluders;
-PENUMBRA_CONST uint kListStride = kListLights + 3u * kMaxClusterLights;
+PENUMBRA_CONST uint kListHiders = kListOccluders + kMaxClusterOccluders;
+PENUMBRA_CONST uint kListLights = kListHiders + kMaxClusterOccluders;
+PENUMBRA_CONST uint kListLightStride = 4u;
+PENUMBRA_CONST uint kListStride = kListLights + kListLightStride * kMaxClusterLights;
 PENUMBRA_CONST uint kSortGroup = 16u;         // clusters per workgroup of entity_sort: one per lane
-PENUMBRA_CONST uint kGpuInstanceTexels = 11u; // vec4 rows of a GpuInstance
+PENUMBRA_CONST uint kGpuInstanceTexels = 12u; // vec4 rows of a GpuInstance
 
 // Written by the CPU when the entity changed: an instance, or a local light, which has a radiance
 // field and no mesh of its own.
@@ -37,6 +41,7 @@ struct InstanceInput {
     uint firstDraw;
     vec3 emission;  // radiance of the surface itself, W/(m² sr)
     uint drawCount; // draw commands from firstDraw on; of a light 0
+    uint hides;     // 1: the field's inscribed ball hides others
 };
 
 // One per field asset.
@@ -44,6 +49,7 @@ struct FieldInput {
     vec3 center;      // object space, metres
     float radius;     // metres
     vec4 bandScale;   // K of band 0..3
+    vec4 inscribed;   // of an occluder: a ball in it, object space, metres; radius 0: none
     uint firstSample; // in the samples of all fields
     uint side;
     uint shells;
@@ -71,6 +77,8 @@ struct GpuInstance {
     vec4 material;  // albedo, glossFraction
     vec4 material1; // glossExponent, scale, of a light: owner + 1 (0: none), firstDraw
     vec4 emission;  // radiance, drawCount
+    vec4 inscribed; // a ball in the occluder: centre and radius, world, metres; radius 0: hides
+                    // nothing
 };
 
 // Bounds of a cluster of a mesh asset, object space. Meaning: assets/mesh_asset.h.
@@ -92,7 +100,8 @@ struct SceneCluster {
 PENUMBRA_CONST uint kCullFrustum = 1u;   // clusters outside the view
 PENUMBRA_CONST uint kCullBackfaces = 2u; // clusters that look away from the eye
 PENUMBRA_CONST uint kCullHorizon = 4u;   // entities under the horizon of a whole cluster
-PENUMBRA_CONST uint kCullAll = 7u;
+PENUMBRA_CONST uint kCullHidden = 8u;    // entities that inscribed spheres of nearer ones hide
+PENUMBRA_CONST uint kCullAll = 15u;
 
 PENUMBRA_CONST uint kLightCoefficients = 36u; // order 6
 PENUMBRA_CONST uint kSkyNodes = 32u;          // of kShNodes
@@ -208,6 +217,8 @@ PENUMBRA_FN GpuInstance makeInstance(InstanceInput i, FieldInput f)
     g.material1 = vec4(i.glossExponent, i.scale, i.owner == kNoOwner ? 0.0f : float(i.owner + 1u),
                        float(i.firstDraw));
     g.emission = vec4(i.emission, float(i.drawCount));
+    g.inscribed = vec4(i.position + i.scale * (r * vec3(f.inscribed)),
+                       i.hides != 0u ? i.scale * f.inscribed.w : 0.0f);
     return g;
 }
 
@@ -327,10 +338,10 @@ PENUMBRA_FN Sh4 shRotateDense(Sh4 f, DenseRotation d)
 PENUMBRA_END
 
 #ifdef __cplusplus
-static_assert(sizeof(penumbra::InstanceInput) == 80 &&
+static_assert(sizeof(penumbra::InstanceInput) == 84 &&
               offsetof(penumbra::InstanceInput, emission) == 64);
-static_assert(sizeof(penumbra::FieldInput) == 64 &&
-              offsetof(penumbra::FieldInput, firstSample) == 32);
+static_assert(sizeof(penumbra::FieldInput) == 80 &&
+              offsetof(penumbra::FieldInput, firstSample) == 48);
 static_assert(sizeof(penumbra::GpuInstance) == 16 * penumbra::kGpuInstanceTexels);
 static_assert(offsetof(penumbra::GpuInstance, worldFromObject0) == 80);
 static_assert(penumbra::kMaxClusterOccluders <= 32); // a light's occluders are bits

@@ -70,5 +70,83 @@ PENUMBRA_FN float horizonWeight(vec3 normal, vec3 to, float sphereRadius)
     return t * t * (3.0f - 2.0f * t);
 }
 
+// The shadow that a ball (centre, radius) casts from a point: the cone of the rays that meet it,
+// beyond the plane through its centre that faces the point.
+struct BallShadow {
+    vec3 axis; // unit, from the point to the ball
+    float distance;
+    float sine, cosine; // of the cone's half-angle
+};
+
+PENUMBRA_FN BallShadow ballShadow(vec3 toBall, float radius)
+{
+    BallShadow shadow;
+    shadow.distance = max(length(toBall), 1e-9f);
+    shadow.axis = toBall * (1.0f / shadow.distance);
+    shadow.sine = clamp(radius / shadow.distance, 0.0f, 1.0f);
+    shadow.cosine = sqrt(1.0f - shadow.sine * shadow.sine);
+    return shadow;
+}
+
+// How much an entity counts for one receiver beside the inscribed ball of an occluder: 0 once its
+// sphere lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 from
+// where a quarter of its width comes out; so what is dropped as hidden had no weight.
+PENUMBRA_FN float shadowWeight(vec3 point, vec4 ball, vec4 sphere)
+{
+    const BallShadow shadow = ballShadow(vec3(ball) - point, ball.w);
+    const vec3 to = vec3(sphere) - point;
+    const float along = dot(to, shadow.axis);
+    const float across = sqrt(max(dot(to, to) - along * along, 0.0f));
+    const float depth = min(along * shadow.sine - across * shadow.cosine, along - shadow.distance);
+    const float t = clamp(2.0f - 2.0f * depth / sphere.w, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+// Bounds of shadowWeight over the points of a cluster. From one at an offset the ball and a sphere
+// look as they do from the cluster's centre when both are moved the other way, so a smaller and a
+// larger ball bound the cone; the plane turns, by less than `tilt` where the sphere is.
+struct ClusterShadow {
+    BallShadow least, most; // with axis and distance the same
+    float radius;           // of the cluster
+    float turn;             // of the axis, at most
+    bool any;
+};
+
+// cluster, ball: centre, radius. A ball of radius 0 casts no shadow.
+PENUMBRA_FN ClusterShadow clusterShadow(vec4 cluster, vec4 ball)
+{
+    const vec3 toBall = vec3(ball) - vec3(cluster);
+    ClusterShadow shadow;
+    shadow.least = ballShadow(toBall, ball.w - cluster.w);
+    shadow.most = ballShadow(toBall, ball.w + cluster.w);
+    shadow.radius = cluster.w;
+    shadow.turn = cluster.w / max(shadow.least.distance - cluster.w, 1e-9f);
+    shadow.any = ball.w > 0.0f;
+    return shadow;
+}
+
+// What holds of a sphere for the receivers of a cluster: shadowWeight is 0 for each; it may be less
+// than 1 for one.
+struct ShadowBounds {
+    bool hidden, touched;
+};
+
+// to = the sphere's centre - the cluster's.
+PENUMBRA_FN ShadowBounds shadowBounds(ClusterShadow shadow, vec3 to, float sphereRadius)
+{
+    const BallShadow least = shadow.least, most = shadow.most;
+    const float along = dot(to, least.axis);
+    const float across = sqrt(max(dot(to, to) - along * along, 0.0f));
+    const float behind = along - least.distance;
+    const float tilt = (across + abs(behind)) * shadow.turn;
+    ShadowBounds bounds;
+    bounds.hidden = least.sine > 0.0f && behind - tilt >= sphereRadius &&
+                    along * least.sine - across * least.cosine >= sphereRadius + shadow.radius;
+    bounds.touched = shadow.any && behind + tilt > 0.5f * sphereRadius &&
+                     (most.sine == 1.0f || along * most.sine - across * most.cosine >
+                                               0.5f * sphereRadius - shadow.radius);
+    return bounds;
+}
+
 PENUMBRA_END
 #endif

@@ -129,7 +129,7 @@ TEST_F(Messages, CompiledFilesAreNoSources)
     }
     EXPECT_FALSE(std::filesystem::exists(folder / "o.glb"));
     std::string old = before;
-    const std::size_t version = old.find("\"version\":\"1.2\"");
+    const std::size_t version = old.find("\"version\":\"1.3\"");
     ASSERT_NE(version, std::string::npos);
     folder.write("old.glb", old.replace(version, 9, "\"vorsion\""));
     EXPECT_NE(

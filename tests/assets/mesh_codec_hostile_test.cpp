@@ -185,6 +185,14 @@ TEST(MeshCodecHostile, FieldHeadIsChecked)
     EXPECT_TRUE(refuses("center", {1, 2}));
     EXPECT_TRUE(refuses("center", {1, 2, 1e300}));
     EXPECT_TRUE(refuses("innerRadius", 100));
+    const auto ball = [](double x, json radius) {
+        return json{{"center", {x, -0.2, 0.3}}, {"radius", std::move(radius)}};
+    };
+    EXPECT_FALSE(refuses("inscribedSphere", ball(0.5, 0.8)));
+    EXPECT_TRUE(refuses("inscribedSphere", ball(0.5, 0.9))); // beyond the bounding sphere
+    EXPECT_TRUE(refuses("inscribedSphere", ball(0.1, -1)));
+    EXPECT_TRUE(refuses("inscribedSphere", ball(0.1, "1")));
+    EXPECT_TRUE(refuses("inscribedSphere", {{"radius", 0.5}}));
     EXPECT_TRUE(refuses("shellSides", {5, 4}));
     EXPECT_FALSE(
         refuses("shellSides", {3, 5})); // as many bytes: cannot be told apart, and does no harm

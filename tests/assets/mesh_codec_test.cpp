@@ -60,6 +60,7 @@ TEST(MeshCodec, RoundTripKeepsTheFieldExactly)
     EXPECT_EQ(decoded->field->bandScale, mesh.field->bandScale);
     EXPECT_EQ(decoded->field->shellSides, mesh.field->shellSides);
     EXPECT_EQ(decoded->field->directions, mesh.field->directions);
+    EXPECT_EQ(decoded->field->inscribed, mesh.field->inscribed);
     EXPECT_EQ(decoded->field->texels, mesh.field->texels);
 }
 
@@ -123,7 +124,7 @@ TEST(MeshCodec, FileIsGltfWithTheTwoExtensions)
     EXPECT_EQ(document["extensionsRequired"],
               nlohmann::json::array({"KHR_draco_mesh_compression"}));
     const auto& extension = document["meshes"][0]["extensions"]["PENUMBRA_shadow_field"];
-    EXPECT_EQ(extension["version"], "1.2");
+    EXPECT_EQ(extension["version"], "1.3");
     EXPECT_EQ(extension["basis"], "sh4");
     EXPECT_EQ(extension["byteLength"], 34 * 16);
     const auto& attributes = document["meshes"][0]["primitives"][0]["attributes"];

@@ -139,15 +139,18 @@ struct ExactProduct {
 template <class Product, class Transfer>
 Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& entities, vec3& sum)
 {
-    const auto weight = [&](std::uint32_t entry) {
-        const vec4 sphere = product.rows.instances[entryRow(entry)].sphere;
-        return entryShare(entry) *
-               horizonWeight(product.normal, vec3(sphere) - product.position, sphere.w);
+    const auto weight = [&](std::uint32_t entry, std::uint32_t hiders) {
+        return entityWeight(product.rows, entities, entry, hiders, product.position,
+                            product.normal);
+    };
+    const auto occluderWeight = [&](std::size_t place) {
+        return weight(entities.occluders[place], entities.hiders[place]);
     };
     std::uint32_t next = 0;
     const auto occludeNext = [&] {
-        const std::uint32_t entry = entities.occluders[next++];
-        transfer = product.occlude(transfer, entryRow(entry), weight(entry));
+        transfer =
+            product.occlude(transfer, entryRow(entities.occluders[next]), occluderWeight(next));
+        ++next;
     };
     for (const ClusterLight& light : entities.lights) {
         while (next < light.before)
@@ -156,15 +159,14 @@ Transfer walk(const Product& product, Transfer transfer, const ClusterEntities& 
         const std::uint32_t lightRow = entryRow(light.entry);
         const GpuInstance& source = product.rows.instances[lightRow];
         for (std::uint32_t bits = light.possible; bits != 0; bits &= bits - 1) {
-            const std::uint32_t entry =
-                entities.occluders[static_cast<std::size_t>(std::countr_zero(bits))];
-            const std::uint32_t row = entryRow(entry);
+            const auto place = static_cast<std::size_t>(std::countr_zero(bits));
+            const std::uint32_t row = entryRow(entities.occluders[place]);
             const float order =
                 orderWeight(product.rows.instances[row].sphere, source.sphere, product.position);
-            through = product.occlude(through, row, order * weight(entry));
+            through = product.occlude(through, row, order * occluderWeight(place));
         }
-        sum +=
-            weight(light.entry) * vec3(source.material) * product.lightThrough(through, lightRow);
+        sum += weight(light.entry, light.hiders) * vec3(source.material) *
+               product.lightThrough(through, lightRow);
     }
     while (next < entities.occluders.size())
         occludeNext();
@@ -189,7 +191,8 @@ vec3 sharpReflection(const Receiver& receiver, const Receiver& turned, const ShN
 struct Candidate {
     float key, importance;
     std::uint32_t row;
-    std::uint32_t entry = 0;
+    std::uint32_t entry = 0, hiders = 0;
+    bool hidden = false;
 };
 
 // The most important ones, near to far, with their share.
@@ -208,6 +211,26 @@ void choose(std::vector<Candidate>& all, std::size_t limit)
     std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
         return std::pair(a.key, a.row) < std::pair(b.key, b.row);
     });
+}
+
+// Sets `hiders` (bits of places in `occluders`) and, with `drops`, `hidden` of a list.
+void findHidden(std::vector<Candidate>& list, std::span<const Candidate> occluders,
+                const CpuInstances& rows, vec4 cluster, bool drops)
+{
+    for (std::size_t j = 0; j < occluders.size(); ++j) {
+        const std::uint32_t row = occluders[j].row;
+        const ClusterShadow shadow = clusterShadow(cluster, rows.instances[row].inscribed);
+        for (Candidate& entity : list) {
+            const GpuInstance& g = rows.instances[entity.row];
+            const auto surface = static_cast<std::uint32_t>(g.material1.z);
+            if (entity.row == row || surface == row + 1)
+                continue;
+            const ShadowBounds bounds =
+                shadowBounds(shadow, vec3(g.sphere) - vec3(cluster), g.sphere.w);
+            entity.hiders |= bounds.touched ? 1u << j : 0u;
+            entity.hidden |= drops && bounds.hidden && entryShare(occluders[j].entry) == 1;
+        }
+    }
 }
 
 // The lists of pass entity_sort for one cluster.
@@ -238,15 +261,35 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
     choose(occluders, kMaxClusterOccluders);
     choose(lights, kMaxClusterLights);
 
-    ClusterEntities out{clusterIndex, {}, std::vector<ClusterLight>(lights.size())};
-    for (const Candidate& occluder : occluders)
-        out.occluders.push_back(occluder.entry);
-    auto before = static_cast<std::uint32_t>(occluders.size());
+    const std::vector<Candidate> all = occluders;
+    const bool drops = (culls & kCullHidden) != 0;
+    findHidden(occluders, all, rows, vec4(s.center, s.radius), drops);
+    findHidden(lights, all, rows, vec4(s.center, s.radius), drops);
+    std::vector<Candidate> placed = occluders;
+    std::stable_partition(placed.begin(), placed.end(),
+                          [](const Candidate& occluder) { return !occluder.hidden; });
+    const auto places = [&](std::uint32_t hiders) {
+        std::uint32_t bits = 0;
+        for (std::size_t i = 0; i < placed.size(); ++i)
+            for (std::size_t j = 0; j < all.size(); ++j)
+                bits |= (hiders >> j & 1u) != 0 && all[j].row == placed[i].row ? 1u << i : 0u;
+        return bits;
+    };
+
+    ClusterEntities out{clusterIndex};
+    for (const Candidate& occluder : placed) {
+        (occluder.hidden ? out.hidden : out.occluders).push_back(occluder.entry);
+        if (!occluder.hidden)
+            out.hiders.push_back(places(occluder.hiders));
+    }
+    std::erase_if(lights, [](const Candidate& light) { return light.hidden; });
+    out.lights.resize(lights.size());
+    auto before = static_cast<std::uint32_t>(out.occluders.size());
     for (std::size_t l = lights.size(); l-- > 0;) {
         const GpuInstance& g = rows.instances[lights[l].row];
         std::uint32_t certain = 0, possible = 0;
-        for (std::uint32_t i = 0; i < occluders.size(); ++i) {
-            const std::uint32_t row = occluders[i].row;
+        for (std::uint32_t i = 0; i < out.occluders.size(); ++i) {
+            const std::uint32_t row = placed[i].row;
             const bool own = row + 1 == static_cast<std::uint32_t>(g.material1.z);
             const float weight =
                 own ? 0
@@ -255,7 +298,8 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
             certain += certain == i && weight == 1 ? 1u : 0u;
         }
         before = std::min(before, certain);
-        out.lights[l] = {lights[l].entry, before, before < 32 ? possible >> before << before : 0u};
+        out.lights[l] = {lights[l].entry, before, before < 32 ? possible >> before << before : 0u,
+                         places(lights[l].hiders)};
     }
     return out;
 }
@@ -272,6 +316,22 @@ CpuInstances updateInstances(const SceneData& scene)
         out.dense.push_back(denseRotation(instanceRotation(out.instances.back())));
     }
     return out;
+}
+
+float entityWeight(const CpuInstances& rows, const ClusterEntities& entities, std::uint32_t entry,
+                   std::uint32_t hiders, vec3 position, vec3 normal)
+{
+    const vec4 sphere = rows.instances[entryRow(entry)].sphere;
+    float weight = entryShare(entry) * horizonWeight(normal, vec3(sphere) - position, sphere.w);
+    for (std::uint32_t bits = hiders; bits != 0; bits &= bits - 1) {
+        const auto place = static_cast<std::size_t>(std::countr_zero(bits));
+        const std::size_t seen = entities.occluders.size();
+        const std::uint32_t hider =
+            place < seen ? entities.occluders[place] : entities.hidden[place - seen];
+        const vec4 ball = rows.instances[entryRow(hider)].inscribed;
+        weight *= mix(1.0f, shadowWeight(position, ball, sphere), entryShare(hider));
+    }
+    return weight;
 }
 
 std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstances& instances,

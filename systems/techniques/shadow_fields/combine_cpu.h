@@ -11,7 +11,7 @@ namespace penumbra {
 
 // A local light of a cluster, as kListLights of shaders/shared/instance.h describes it.
 struct ClusterLight {
-    std::uint32_t entry = 0, before = 0, possible = 0;
+    std::uint32_t entry = 0, before = 0, possible = 0, hiders = 0;
     bool operator==(const ClusterLight&) const = default;
 };
 
@@ -19,6 +19,8 @@ struct ClusterLight {
 struct ClusterEntities {
     std::uint32_t cluster = 0;
     std::vector<std::uint32_t> occluders; // listEntry() of shaders/shared/instance.h
+    std::vector<std::uint32_t> hidden;    // likewise: dropped, but named by `hiders`
+    std::vector<std::uint32_t> hiders;    // [occluders] bits of places in `occluders` and `hidden`
     std::vector<ClusterLight> lights;
 };
 
@@ -32,6 +34,10 @@ CpuInstances updateInstances(const SceneData& scene);
 // As passes cluster_cull and entity_sort, in cluster order.
 std::vector<ClusterEntities> cullAndSort(const SceneData& scene, const CpuInstances& instances,
                                          const FrameConstants& frame);
+
+// How much an occluder or light counts for a receiver, but for the order of occluder and light.
+float entityWeight(const CpuInstances& rows, const ClusterEntities& entities, std::uint32_t entry,
+                   std::uint32_t hiders, vec3 position, vec3 normal);
 
 // As passes combine_*: writes the kClusterReceivers entries of the cluster in `radiance`
 // [scene.radianceCount]. `sky`: not empty; null: none, as for GpuScene::setSkyLobes.

@@ -35,7 +35,7 @@ protected:
     void SetUp() override
     {
         GpuTest::SetUp();
-        m_passes = take(createFramePasses(device(), false));
+        m_passes = take(createFramePasses(device(), {}));
         m_day = m_store.addEnvironment(makeSky(64, 32, lopsided));
         m_dusk = m_store.addEnvironment(makeSky(128, 64, evening));
         m_dawn = m_store.addEnvironment(makeSky(16, 8, [](vec3 d) { return lopsided(-d); }));

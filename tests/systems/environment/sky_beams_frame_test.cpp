@@ -40,7 +40,7 @@ protected:
     void SetUp() override
     {
         GpuTest::SetUp();
-        m_passes = take(createFramePasses(device(), false));
+        m_passes = take(createFramePasses(device(), {}));
         m_map = m_store.addEnvironment(makeSky(256, 128, [](vec3 d) {
             return vec3(0.05f) + (dot(d, kLamp) > std::cos(kLampAngle) ? vec3(60) : vec3(0));
         }));

@@ -36,11 +36,16 @@ protected:
         static const TestScene kScene = makeLitTestScene();
         return kScene;
     }
+    static const TestScene& boulderScene()
+    {
+        static const TestScene kScene = makeBoulderTestScene();
+        return kScene;
+    }
 
     Drawn draw(const TestScene& scene, Kernel kernel, std::uint32_t frames = 1,
                std::uint32_t culls = kCullAll)
     {
-        const FramePasses passes = take(createFramePasses(device(), !scene.data.lights.empty()));
+        const FramePasses passes = take(createFramePasses(device(), sceneFeatures(scene.data)));
         FrameTargets targets = take(createFrameTargets(device(), passes, {160, 120}));
         GpuScene gpu = take(GpuScene::create(device(), scene.data, scene.environment, 2));
         FrameRing ring(device());
@@ -112,44 +117,62 @@ TEST_F(FrameTest, InstanceUpdateEqualsTwin)
 
 TEST_F(FrameTest, CullAndSortEqualTwin)
 {
-    const TestScene& scene = litScene();
-    const Drawn drawn = draw(scene, Kernel::Exact);
-    const std::vector<ClusterEntities> twin =
-        cullAndSort(scene.data, updateInstances(scene.data), scene.constants);
-    EXPECT_LT(twin.size(), scene.data.clusters.size()); // something is culled …
-    ASSERT_GT(twin.size(), 10u);                        // … and not everything
-    ASSERT_EQ(drawn.visible.size(), twin.size());
-    std::map<std::uint32_t, std::size_t> slotOf;
-    for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
-        slotOf[drawn.visible[slot]] = slot;
-    std::uint32_t pairs = 0, before = 0, possible = 0;
-    for (const ClusterEntities& cluster : twin) {
-        ASSERT_TRUE(slotOf.contains(cluster.cluster));
-        const std::uint32_t* list = &drawn.lists[slotOf[cluster.cluster] * kListStride];
-        const std::uint32_t* const occluders = list + kListOccluders;
-        EXPECT_EQ(std::vector<std::uint32_t>(occluders, occluders + list[0]), cluster.occluders);
-        pairs += list[0];
-        const std::uint32_t* const lights = list + kListLights;
-        ASSERT_EQ(list[1], cluster.lights.size());
-        for (std::size_t l = 0; l < cluster.lights.size(); ++l) {
-            const ClusterLight& light = cluster.lights[l];
-            EXPECT_EQ((ClusterLight{lights[3 * l], lights[3 * l + 1], lights[3 * l + 2]}), light);
-            EXPECT_GE(light.before, l == 0 ? 0 : cluster.lights[l - 1].before);
-            before += light.before;
-            possible += light.possible != 0;
+    std::uint32_t before = 0, possible = 0, hidden = 0, hiders = 0;
+    for (const TestScene* scene : {&litScene(), &boulderScene()}) {
+        const Drawn drawn = draw(*scene, Kernel::Exact);
+        const std::vector<ClusterEntities> twin =
+            cullAndSort(scene->data, updateInstances(scene->data), scene->constants);
+        EXPECT_LT(twin.size(), scene->data.clusters.size()); // something is culled …
+        ASSERT_GT(twin.size(), 10u);                         // … and not everything
+        ASSERT_EQ(drawn.visible.size(), twin.size());
+        const bool hides = sceneFeatures(scene->data).hiders;
+        std::map<std::uint32_t, std::size_t> slotOf;
+        for (std::size_t slot = 0; slot < drawn.visible.size(); ++slot)
+            slotOf[drawn.visible[slot]] = slot;
+        std::uint32_t pairs = 0;
+        for (const ClusterEntities& cluster : twin) {
+            ASSERT_TRUE(slotOf.contains(cluster.cluster));
+            const std::uint32_t* list = &drawn.lists[slotOf[cluster.cluster] * kListStride];
+            const auto words = [&](std::uint32_t first, std::size_t count) {
+                return std::vector<std::uint32_t>(list + first, list + first + count);
+            };
+            ASSERT_EQ(list[0], cluster.occluders.size());
+            EXPECT_EQ(words(kListOccluders, list[0]), cluster.occluders);
+            EXPECT_EQ(words(kListOccluders + list[0], cluster.hidden.size()), cluster.hidden);
+            if (hides) {
+                EXPECT_EQ(words(kListHiders, list[0]), cluster.hiders);
+            }
+            pairs += list[0];
+            hidden += static_cast<std::uint32_t>(cluster.hidden.size());
+            hiders += static_cast<std::uint32_t>(
+                std::count_if(cluster.hiders.begin(), cluster.hiders.end(),
+                              [](std::uint32_t bits) { return bits != 0; }));
+            ASSERT_EQ(list[1], cluster.lights.size());
+            for (std::size_t l = 0; l < cluster.lights.size(); ++l) {
+                const ClusterLight& light = cluster.lights[l];
+                const std::uint32_t* const at = list + kListLights + kListLightStride * l;
+                EXPECT_EQ((ClusterLight{at[0], at[1], at[2], hides ? at[3] : 0u}), light);
+                EXPECT_GE(light.before, l == 0 ? 0 : cluster.lights[l - 1].before);
+                before += light.before;
+                possible += light.possible != 0;
+            }
         }
+        EXPECT_EQ(drawn.cull.pairs, pairs);
+        EXPECT_GT(pairs, twin.size()); // more than one occluder per cluster
+        EXPECT_EQ(drawn.cull.dropped, 0u);
     }
     EXPECT_GT(before, 0u);   // some occluders stand before a light for certain …
     EXPECT_GT(possible, 0u); // … and some only for a part of the receivers
-    EXPECT_EQ(drawn.cull.pairs, pairs);
-    EXPECT_GT(pairs, twin.size()); // more than one occluder per cluster
-    EXPECT_EQ(drawn.cull.dropped, 0u);
+    EXPECT_GT(hidden, 10u);  // some are hidden from a whole cluster …
+    EXPECT_GT(hiders, 100u); // … and some from a part of it
+    RecordProperty("hidden", static_cast<int>(hidden));
 }
 
 TEST_F(FrameTest, LiteralEqualsTwin)
 {
     expectTwin(scene(), Kernel::Literal, 1e-4, false);
     expectTwin(litScene(), Kernel::Literal, 1e-4, false);
+    expectTwin(boulderScene(), Kernel::Literal, 1e-4, false);
 }
 
 // A weight of 1/256 may round the other way where the two differ in the last bit of a fraction.
@@ -157,6 +180,7 @@ TEST_F(FrameTest, ExactEqualsTwin)
 {
     expectTwin(scene(), Kernel::Exact, 3e-3, true);
     expectTwin(litScene(), Kernel::Exact, 3e-3, true);
+    expectTwin(boulderScene(), Kernel::Exact, 3e-3, true);
 }
 
 // A share may round to the other 1/255, and among entities without a share the choice is free.
@@ -195,7 +219,8 @@ TEST_F(FrameTest, FullListsEqualTwin)
             lights.push_back(light.entry);
         expectEqual(sharesOf(list + kListOccluders, list[0], 1),
                     sharesOf(cluster.occluders.data(), list[0], 1));
-        expectEqual(sharesOf(list + kListLights, list[1], 3), sharesOf(lights.data(), list[1], 1));
+        expectEqual(sharesOf(list + kListLights, list[1], kListLightStride),
+                    sharesOf(lights.data(), list[1], 1));
         fullOfOccluders += list[0] == kMaxClusterOccluders;
         fullOfLights += list[1] == kMaxClusterLights;
     }
@@ -209,7 +234,7 @@ TEST_F(FrameTest, FullListsEqualTwin)
 // Each kernel has constants of its own, and what kernel exact has of the light follows it.
 TEST_F(FrameTest, KernelsAndLightChangeFromFrameToFrame)
 {
-    const FramePasses passes = take(createFramePasses(device(), false));
+    const FramePasses passes = take(createFramePasses(device(), {}));
     FrameTargets targets = take(createFrameTargets(device(), passes, {64, 48}));
     GpuScene gpu = take(GpuScene::create(device(), scene().data, scene().environment, 2));
     FrameRing ring(device());
@@ -240,19 +265,24 @@ TEST_F(FrameTest, KernelsAndLightChangeFromFrameToFrame)
 // Every test is conservative: without it there is more to do, and the same to see.
 TEST_F(FrameTest, CullingChangesNothingInThePicture)
 {
-    const Drawn culled = draw(litScene(), Kernel::Exact);
-    for (const std::uint32_t off : {kCullFrustum, kCullBackfaces, kCullHorizon}) {
-        const Drawn drawn = draw(litScene(), Kernel::Exact, 1, kCullAll & ~off);
-        const std::uint32_t more = off == kCullFrustum ? 0 : 1; // all of the scene is in view
-        EXPECT_GE(drawn.cull.pairs, culled.cull.pairs + more) << off;
-        ASSERT_EQ(drawn.picture.size(), culled.picture.size());
-        int largest = 0;
-        for (std::size_t i = 0; i < drawn.picture.size(); ++i)
-            largest = std::max(largest, std::abs(std::to_integer<int>(drawn.picture[i]) -
-                                                 std::to_integer<int>(culled.picture[i])));
-        // Bytes: a difference of 0.5 / 255 or less rounds to 0 or 1.
-        EXPECT_LE(largest, 1) << off;
-        RecordProperty(fmt::format("largest{}", off), largest);
+    for (const Kernel kernel : {Kernel::Exact, Kernel::Literal}) {
+        for (const std::uint32_t off : {kCullFrustum, kCullBackfaces, kCullHorizon, kCullHidden}) {
+            const TestScene& scene = off == kCullHidden ? boulderScene() : litScene();
+            const Drawn culled = draw(scene, kernel);
+            const Drawn drawn = draw(scene, kernel, 1, kCullAll & ~off);
+            const std::uint32_t more = off == kCullFrustum ? 0 : 1; // all of the scene is in view
+            EXPECT_GE(drawn.cull.pairs, culled.cull.pairs + more) << off;
+            ASSERT_EQ(drawn.picture.size(), culled.picture.size());
+            int largest = 0;
+            for (std::size_t i = 0; i < drawn.picture.size(); ++i)
+                largest = std::max(largest, std::abs(std::to_integer<int>(drawn.picture[i]) -
+                                                     std::to_integer<int>(culled.picture[i])));
+            // Bytes: a difference of 0.5 / 255 or less rounds to 0 or 1.
+            EXPECT_LE(largest, 1) << off;
+            RecordProperty(fmt::format("{}{}", kernelName(kernel), off),
+                           fmt::format("largest {}, pairs {} of {}", largest, culled.cull.pairs,
+                                       drawn.cull.pairs));
+        }
     }
 }
 

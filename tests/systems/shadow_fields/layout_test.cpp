@@ -23,10 +23,12 @@ TEST(Layout, InstanceInputAndField)
     EXPECT_SAME_OFFSET(input, InstanceInput, field);
     EXPECT_SAME_OFFSET(input, InstanceInput, firstDraw);
     EXPECT_SAME_OFFSET(input, InstanceInput, drawCount);
+    EXPECT_SAME_OFFSET(input, InstanceInput, hides);
     EXPECT_EQ(input.arrayStride, sizeof(InstanceInput));
     const SpirvStruct field = spirvStruct(shaderCode("instance_update.comp"), "FieldInput");
     EXPECT_SAME_OFFSET(field, FieldInput, radius);
     EXPECT_SAME_OFFSET(field, FieldInput, bandScale);
+    EXPECT_SAME_OFFSET(field, FieldInput, inscribed);
     EXPECT_SAME_OFFSET(field, FieldInput, firstSample);
     EXPECT_SAME_OFFSET(field, FieldInput, outerRadius);
     EXPECT_EQ(field.arrayStride, sizeof(FieldInput));
@@ -39,6 +41,7 @@ TEST(Layout, GpuInstance)
     EXPECT_SAME_OFFSET(g, GpuInstance, grid);
     EXPECT_SAME_OFFSET(g, GpuInstance, worldFromObject0);
     EXPECT_SAME_OFFSET(g, GpuInstance, material1);
+    EXPECT_SAME_OFFSET(g, GpuInstance, inscribed);
     EXPECT_EQ(g.arrayStride, sizeof(GpuInstance));
     EXPECT_EQ(spirvStruct(shaderCode("instance_update.comp"), "DenseRotation").arrayStride,
               sizeof(DenseRotation));

@@ -147,8 +147,8 @@ TEST(Invariance, TheOrderOfTwoDisjointOccludersHardlyMatters)
     for (const Kernel kernel : kKernels) {
         std::vector<vec4> near(scene.radianceCount), far(scene.radianceCount);
         for (std::uint32_t c = 0; scene.clusters[c].instance == 0; ++c) {
-            combineCluster(kernel, scene, rows, frame, {c, {first, second}, {}}, near);
-            combineCluster(kernel, scene, rows, frame, {c, {second, first}, {}}, far);
+            combineCluster(kernel, scene, rows, frame, {c, {first, second}, {}, {0, 0}, {}}, near);
+            combineCluster(kernel, scene, rows, frame, {c, {second, first}, {}, {0, 0}, {}}, far);
         }
         near.resize(scene.firstRadiance[1]);
         far.resize(scene.firstRadiance[1]);

@@ -112,7 +112,7 @@ TEST_F(PixelTest, RadianceEqualsTwin)
     for (const Kernel kernel : {Kernel::Literal, Kernel::Exact}) {
         const DrawnPixels drawn = draw(litScene(), {.kernel = kernel});
         FrameConstants constants = litScene().constants;
-        constants.culls = kCullHorizon; // clusters of pixels are in view
+        constants.culls = kCullHorizon | kCullHidden; // clusters of pixels are in view
         const CpuInstances rows = updateInstances(litScene().data);
         std::vector<vec4> cpu(drawn.data.radianceCount);
         for (const ClusterEntities& cluster : cullAndSort(drawn.data, rows, constants))

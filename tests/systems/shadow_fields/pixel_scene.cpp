@@ -10,7 +10,7 @@ DrawnPixels PixelTest::draw(const SceneData& data, const Environment& environmen
                             const FrameConstants& constants, const DrawOptions& options)
 {
     if (!m_passes)
-        m_passes = take(createFramePasses(device(), true));
+        m_passes = take(createFramePasses(device(), {.lights = true, .hiders = true}));
     const FramePasses& passes = *m_passes;
     const FrameTargets targets = take(createFrameTargets(device(), passes, options.extent));
     GpuScene gpu = take(GpuScene::create(device(), data, environment, 2));

@@ -135,6 +135,31 @@ MeshAsset makeRectangleLight(vec2 size, vec3 radiance)
 
 namespace {
 
+// From scene.assets, a sky and a camera.
+void assemble(TestScene& scene, std::vector<SceneInstance> instances,
+              std::vector<SceneLight> lights)
+{
+    const std::uint32_t width = 32, height = 16;
+    std::vector<vec3> map;
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const vec3 d =
+                equirectDirection(vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) /
+                                  vec2(width, height));
+            map.push_back(vec3(0.3f) + std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f)))) *
+                                           vec3(2.0f, 1.6f, 1.2f));
+        }
+    scene.environment = makeEnvironment(width, height, std::move(map));
+
+    std::vector<const MeshAsset*> meshes;
+    for (const MeshAsset& mesh : scene.assets)
+        meshes.push_back(&mesh);
+    scene.data = buildSceneData(meshes, std::move(instances), std::move(lights));
+    scene.view =
+        viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
+    scene.constants = frameConstants(scene.view, environmentLight(scene.environment, 1), 1);
+}
+
 // `crowd`: small spheres, and half as many lights, among the objects.
 TestScene makeScene(bool lit, int crowd = 0)
 {
@@ -157,18 +182,6 @@ TestScene makeScene(bool lit, int crowd = 0)
         instances.push_back(instance);
     }
     instances.push_back({.mesh = 2, .position = vec3(0, -0.1f, 0), .material = {vec3(0.7f), 0, 0}});
-
-    const std::uint32_t width = 32, height = 16;
-    std::vector<vec3> map;
-    for (std::uint32_t y = 0; y < height; ++y)
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const vec3 d =
-                equirectDirection(vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) /
-                                  vec2(width, height));
-            map.push_back(vec3(0.3f) + std::max(0.0f, dot(d, normalize(vec3(1, 2, 0.5f)))) *
-                                           vec3(2.0f, 1.6f, 1.2f));
-        }
-    scene.environment = makeEnvironment(width, height, std::move(map));
 
     std::vector<SceneLight> lights;
     if (lit) {
@@ -199,13 +212,7 @@ TestScene makeScene(bool lit, int crowd = 0)
         if (i % 2 == 0)
             lights.push_back({.asset = 3, .position = at + vec3(0, 0.4f, 0), .scale = 0.3f});
     }
-    std::vector<const MeshAsset*> meshes;
-    for (const MeshAsset& mesh : scene.assets)
-        meshes.push_back(&mesh);
-    scene.data = buildSceneData(meshes, std::move(instances), std::move(lights));
-    scene.view =
-        viewOf({.target = vec3(0, 0.5f, 0), .distance = 5, .yaw = 0.4f, .pitch = 0.5f}, 4.0f / 3);
-    scene.constants = frameConstants(scene.view, environmentLight(scene.environment, 1), 1);
+    assemble(scene, std::move(instances), std::move(lights));
     return scene;
 }
 
@@ -226,10 +233,32 @@ TestScene makeCrowdedTestScene()
     return makeScene(true, 48);
 }
 
+TestScene makeBoulderTestScene()
+{
+    TestScene scene;
+    scene.assets.push_back(makeSphereAsset(0.5f, 16));
+    scene.assets.push_back(makeBoxAsset(vec3(2.4f, 0.1f, 2.4f), 96, false));
+    scene.assets.push_back(makeSphereLight(0.15f, vec3(20, 16, 10)));
+    std::vector<SceneInstance> instances = {
+        {.mesh = 0, .position = vec3(0, 0.3f, 0), .scale = 2, .occluder = 0},
+        {.mesh = 1, .position = vec3(0, -0.1f, 0), .material = {vec3(0.7f), 0, 0}}};
+    std::vector<SceneLight> lights;
+    for (int i = 0; i < 9; ++i) {
+        const float angle = 0.7f * static_cast<float>(i);
+        const vec3 at(1.5f * std::cos(angle), 0.5f, 1.5f * std::sin(angle));
+        if (i % 4 == 1)
+            lights.push_back({.asset = 2, .position = at, .scale = 2});
+        else
+            instances.push_back({.mesh = 0, .position = at, .scale = 0.9f, .occluder = 0});
+    }
+    assemble(scene, std::move(instances), std::move(lights));
+    return scene;
+}
+
 std::vector<ClusterEntities> sortAll(const SceneData& data, const CpuInstances& rows)
 {
     FrameConstants frame = frameConstants({}, LightSh{}, 0);
-    frame.culls = kCullHorizon;
+    frame.culls = kCullHorizon | kCullHidden;
     return cullAndSort(data, rows, frame);
 }
 

@@ -37,6 +37,9 @@ TestScene makeLitTestScene();
 // More of both than the lists of a cluster hold.
 TestScene makeCrowdedTestScene();
 
+// A large ball with small ones and lights all around: to the floor, it hides those behind it.
+TestScene makeBoulderTestScene();
+
 // All clusters with their lists by the CPU twin, whatever the camera sees.
 std::vector<ClusterEntities> sortAll(const SceneData& data, const CpuInstances& rows);
 

@@ -140,7 +140,7 @@ double difference(const std::vector<vec4>& a, const std::vector<vec4>& b)
 TEST_F(Gloss, AMaterialChangedBetweenFramesReachesTheGpu)
 {
     GpuScene scene = take(GpuScene::create(device(), m_data, m_sky, 2));
-    const FramePasses passes = take(createFramePasses(device(), false));
+    const FramePasses passes = take(createFramePasses(device(), {}));
     FrameTargets targets = take(createFrameTargets(device(), passes, {32, 32}));
     FrameRing ring(device());
     MeshMaterial sharper = kGlossy;
@@ -222,7 +222,7 @@ TEST_F(Gloss, TheGpuMirrorsTheSkyAsItsTwinDoes)
     const SkyLobes lobes = filterSky(m_sky);
     m_data.instances[0].material = kGlossy;
     GpuScene scene = take(GpuScene::create(device(), m_data, m_sky, 2));
-    const FramePasses passes = take(createFramePasses(device(), false));
+    const FramePasses passes = take(createFramePasses(device(), {}));
     FrameTargets targets = take(createFrameTargets(device(), passes, {32, 32}));
     FrameRing ring(device());
     SkyLobes dimmed;

@@ -33,7 +33,7 @@ protected:
     {
         GpuScene scene = take(makeScene(mesh, instance));
         if (!m_passes)
-            m_passes = take(createFramePasses(device(), false));
+            m_passes = take(createFramePasses(device(), {}));
         const FramePasses& passes = *m_passes;
         FrameTargets targets = take(createFrameTargets(device(), passes, {kSide, kSide}));
         const std::vector<vec4> receivers(scene.data().radianceCount, vec4(radiance, 1));
