@@ -16,12 +16,22 @@ void copyStrided(std::byte* to, const std::byte* from, size_t fromStride, size_t
         std::memcpy(to, from, size);
 }
 
+// Bytes. The processor's own prefetching stops at the end of each page of memory.
+constexpr size_t kFillAhead = 1024;
+
 template <class Word>
 void repeatValue(std::byte* to, const std::byte* from, size_t n)
 {
     Word word;
     std::memcpy(&word, from, sizeof(word));
-    for (size_t i = 0; i < n; ++i)
+    constexpr size_t kLine = 64 / sizeof(word);
+    size_t i = 0;
+    for (; i + kLine <= n; i += kLine) {
+        __builtin_prefetch(to + i * sizeof(word) + kFillAhead, 1);
+        for (size_t k = 0; k < kLine; ++k)
+            std::memcpy(to + (i + k) * sizeof(word), &word, sizeof(word));
+    }
+    for (; i < n; ++i)
         std::memcpy(to + i * sizeof(word), &word, sizeof(word));
 }
 

@@ -80,8 +80,8 @@ public:
         record.place = place;
         return {index, record.generation};
     }
-    // For rows [row, row + out.size()), whose pages are given; room is there.
-    void allocateMany(std::span<Entity> out, std::span<const uint32_t> pages, uint32_t row);
+    // For rows [row, row + out.size()) of one page; room is there.
+    void allocateMany(std::span<Entity> out, uint32_t page, uint32_t row);
     void release(Entity entity)
     {
         Record& record = m_records[entity.index];
@@ -109,6 +109,7 @@ public:
     [[nodiscard]] uint32_t generation(uint32_t index) const { return m_records[index].generation; }
     [[nodiscard]] uint32_t count() const { return indexCount() - m_freeCount - m_retired; }
     [[nodiscard]] uint32_t indexCount() const { return static_cast<uint32_t>(m_records.size()); }
+    static constexpr uint32_t kRunGroup = 64; // free indices that are taken at once
     // Grows whenever an entity got another place: tells whether remembered places still hold.
     [[nodiscard]] uint64_t moves() const { return m_moves; }
     [[nodiscard]] size_t bytes() const;
@@ -127,6 +128,8 @@ private:
 
     Entity allocateNew();
     Entity allocateNewAt(uint32_t place);
+    template <int kStep>
+    uint32_t reuseRun(std::span<Entity> out, uint32_t place);
     uint32_t reuse(std::span<Entity> out, uint32_t place);
     void grow(size_t count);
 

@@ -114,8 +114,14 @@ Archetype& World::roomFor(const ComponentSet& set, size_t count)
 
 void World::appendNew(Archetype& archetype, std::span<Entity> out)
 {
-    m_entities.allocateMany(out, archetype.pages, archetype.count());
-    archetype.append(out, m_stamp);
+    constexpr uint32_t kPart = 1024; // of a page: what is written is read again from the cache
+    while (!out.empty()) {
+        const uint32_t row = archetype.count();
+        const auto part = out.first(std::min<size_t>(out.size(), kPart - row % kPart));
+        m_entities.allocateMany(part, archetype.pages[row >> kPageShift], row);
+        archetype.append(part, m_stamp);
+        out = out.subspan(part.size());
+    }
 }
 
 // What setting a parent needs, before anything changes: both alive, room for the links.

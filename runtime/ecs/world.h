@@ -52,8 +52,9 @@ public:
     // --- Entities. All components arrive in one move.
     template <class... Ts>
     Entity create(Ts&&... values);
-    // out.size() entities. Each argument is one value for all of them, or a
-    // std::span<const T> of out.size() values.
+    // out.size() entities. Each argument is one value for all of them, a std::span<const T> of
+    // out.size() values, or a function that makes the value of place i: T(uint32_t i). It must not
+    // use the world.
     template <class... Arguments>
     void createMany(std::span<Entity> out, const Arguments&... arguments);
     // With everything below it in the hierarchy.

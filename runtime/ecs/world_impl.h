@@ -25,27 +25,83 @@ inline void World::assertOutsideSystems() const
 
 [[noreturn]] void failBulkCount(std::string_view component, size_t values, size_t entities);
 
-// createMany() arguments: T repeats one value, std::span<const T> gives one each.
+// Constructs value(first), value(first + 1), … in the rows, which are within room. If one throws,
+// none is left.
+template <class T, class Function>
+void fillFrom(Archetype& archetype, uint32_t row, uint32_t count, const Function& value,
+              uint32_t first)
+{
+    const ComponentId id = componentId<T>();
+    const auto column = static_cast<uint32_t>(archetype.columnOf(id));
+    for (uint32_t done = 0; done < count;) {
+        const uint32_t at = row + done;
+        const auto inBlock = static_cast<uint32_t>(archetype.rowInBlock(at));
+        const uint32_t length = std::min(archetype.blockRows() - inBlock, count - done);
+        if constexpr (kIsPlain<T>) {
+            using Lanes = std::array<Lane<T>, kLaneCount<T>>;
+            std::array<Lane<T>*, kLaneCount<T>> to;
+            for (uint32_t lane = 0; lane < to.size(); ++lane)
+                to[lane] = reinterpret_cast<Lane<T>*>(archetype.at(column + lane, at));
+            for (uint32_t i = 0; i < length; ++i) {
+                const Lanes lanes = std::bit_cast<Lanes>(T(value(first + done + i)));
+                for (uint32_t lane = 0; lane < to.size(); ++lane)
+                    new (to[lane] + i) Lane<T>(lanes[lane]);
+            }
+        } else {
+            T* const to = reinterpret_cast<T*>(archetype.at(column, at));
+            uint32_t made = 0;
+            try {
+                for (; made < length; ++made)
+                    new (to + made) T(value(first + done + made));
+            } catch (...) {
+                archetype.destroyValues(id, row, done + made);
+                throw;
+            }
+        }
+        done += length;
+    }
+}
+
+// createMany() arguments: T repeats one value, std::span<const T> gives one each, and so does a
+// function of the place in the list.
 template <class T>
 struct BulkArgument {
     using Component = T;
-    static const void* values(const T& value, size_t) { return &value; }
-    static const void* at(const T& value, size_t) { return &value; }
-    static const T& one(const T& value, size_t) { return value; }
-    static constexpr size_t kStride = 0;
+    static void check(const T&, size_t) {}
+    // Rows [row, row + count), from the value of place `first` on.
+    static void fill(Archetype& archetype, uint32_t row, uint32_t count, const T& value, uint32_t)
+    {
+        archetype.fill(componentId<T>(), row, count, &value, 0);
+    }
+    static const T& one(const T& value, uint32_t) { return value; }
 };
 template <class T, size_t kExtent>
 struct BulkArgument<std::span<T, kExtent>> {
     using Component = std::remove_const_t<T>;
-    static const void* values(std::span<T, kExtent> values, size_t count)
+    static void check(std::span<T, kExtent> values, size_t count)
     {
         if (values.size() != count) [[unlikely]]
             failBulkCount(ComponentTraits<Component>::kName, values.size(), count);
-        return values.data();
     }
-    static const void* at(std::span<T, kExtent> values, size_t i) { return values.data() + i; }
-    static const T& one(std::span<T, kExtent> values, size_t i) { return values[i]; }
-    static constexpr size_t kStride = sizeof(T);
+    static void fill(Archetype& archetype, uint32_t row, uint32_t count,
+                     std::span<T, kExtent> values, uint32_t first)
+    {
+        archetype.fill(componentId<Component>(), row, count, values.data() + first, sizeof(T));
+    }
+    static const T& one(std::span<T, kExtent> values, uint32_t i) { return values[i]; }
+};
+template <class T>
+requires std::is_invocable_v<const T&, uint32_t>
+struct BulkArgument<T> {
+    using Component = std::remove_cvref_t<std::invoke_result_t<const T&, uint32_t>>;
+    static void check(const T&, size_t) {}
+    static void fill(Archetype& archetype, uint32_t row, uint32_t count, const T& value,
+                     uint32_t first)
+    {
+        if constexpr (!kIsTag<Component>)
+            fillFrom<Component>(archetype, row, count, value, first);
+    }
+    static Component one(const T& value, uint32_t i) { return value(i); }
 };
 
 // Inline: a row is written in less time than a call through here takes.
@@ -132,6 +188,7 @@ template <class... Arguments>
 void World::createMany(std::span<Entity> out, const Arguments&... arguments)
 {
     const auto count = static_cast<uint32_t>(out.size());
+    (BulkArgument<Arguments>::check(arguments, count), ...);
     Archetype& archetype =
         roomFor(componentSet<typename BulkArgument<Arguments>::Component...>(), count);
     const uint32_t row = archetype.count();
@@ -151,9 +208,7 @@ void World::fillAll(Archetype& archetype, [[maybe_unused]] uint32_t row,
 {
     [[maybe_unused]] size_t filled = 0;
     [[maybe_unused]] const auto fill = [&]<class Argument>(const Argument& argument) {
-        archetype.fill(componentId<typename BulkArgument<Argument>::Component>(), row, count,
-                       BulkArgument<Argument>::values(argument, count),
-                       BulkArgument<Argument>::kStride);
+        BulkArgument<Argument>::fill(archetype, row, count, argument, 0);
         ++filled;
     };
     if constexpr ((kIsPlain<typename BulkArgument<Arguments>::Component> && ...)) {
@@ -205,7 +260,7 @@ void World::addMany(std::span<const Entity> entities, const Arguments&... argume
     static_assert((!std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> && ...),
                   "parents go one by one: setParent()");
     assertStructural();
-    (static_cast<void>(BulkArgument<Arguments>::values(arguments, entities.size())), ...);
+    (BulkArgument<Arguments>::check(arguments, entities.size()), ...);
     const ComponentSet& set = componentSet<typename BulkArgument<Arguments>::Component...>();
     ObserversWait observers(*this);
     for (size_t done = 0; done < entities.size();) {
@@ -217,15 +272,15 @@ void World::addMany(std::span<const Entity> entities, const Arguments&... argume
             (kIsPlain<typename BulkArgument<Arguments>::Component> && ...) && &to != &from;
         if (plainAndNew) {
             const uint32_t row = moveRun(run, from, to);
-            (to.fill(componentId<typename BulkArgument<Arguments>::Component>(), row,
-                     static_cast<uint32_t>(length), BulkArgument<Arguments>::at(arguments, done),
-                     BulkArgument<Arguments>::kStride),
+            (BulkArgument<Arguments>::fill(to, row, static_cast<uint32_t>(length), arguments,
+                                           static_cast<uint32_t>(done)),
              ...);
             if (m_observers != nullptr) [[unlikely]]
                 tellGiven(run, from.mask(), set.mask);
         } else {
             for (size_t i = 0; i < length; ++i)
-                add(run[i], BulkArgument<Arguments>::one(arguments, done + i)...);
+                add(run[i],
+                    BulkArgument<Arguments>::one(arguments, static_cast<uint32_t>(done + i))...);
         }
         done += length;
     }

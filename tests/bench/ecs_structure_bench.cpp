@@ -109,17 +109,15 @@ void createManyWorld(benchmark::State& state, size_t n)
 {
     FullWorld full(n);
     auto& [world, entities] = full;
-    std::vector<Position> positions(n);
-    for (size_t i = 0; i < n; ++i)
-        positions[i] = positionOf(i);
     bool done = true;
     for (auto _ : state) {
         state.PauseTiming();
         world.destroyMany(entities);
         done = done && world.count() == 0;
         state.ResumeTiming();
-        world.createMany(entities, std::span<const Position>(positions), Velocity{1, 2, 3},
-                         Orientation{}, Health{100});
+        world.createMany(
+            entities, [](uint32_t i) { return positionOf(i); }, Velocity{1, 2, 3}, Orientation{},
+            Health{100});
     }
     items(state, n);
     check(state, done && world.count() == n &&

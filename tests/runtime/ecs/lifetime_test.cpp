@@ -233,6 +233,8 @@ TEST_F(Lifetime, ACopyThatThrowsChangesNothing)
         failing(copies,
                 [&] { world.createMany(more, std::span<const Tracked>(values), Position{}); });
         failing(copies, [&] { world.createMany(more, Health{}, value); });
+        failing(copies,
+                [&] { world.createMany(more, Position{}, [&](uint32_t i) { return values[i]; }); });
     }
 }
 

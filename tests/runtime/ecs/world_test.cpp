@@ -1,7 +1,9 @@
 #include "runtime/ecs/world.h"
 #include "tests/runtime/ecs/components.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <random>
 
 namespace penumbra::ecs {
 
@@ -69,6 +71,37 @@ TEST(World, CreatesManyFromOneValueOrOneEach)
     }
 }
 
+// In one column, in lanes, without values, and beside values of other kinds; over many blocks.
+TEST(World, CreatesManyFromFunctions)
+{
+    World world;
+    std::vector<Entity> entities(40'000);
+    const auto velocityOf = [](uint32_t i) {
+        const auto f = static_cast<float>(i);
+        return Velocity{f, -f, 0.5f * f};
+    };
+    world.createMany(
+        entities,
+        [](uint32_t i) {
+            return Wide{{1.0 * i, 2.0 * i}};
+        },
+        velocityOf, [](uint32_t) { return Frozen{}; }, Health{3});
+    std::vector<Entity> half;
+    for (uint32_t i = 0; i < entities.size(); i += 2)
+        half.push_back(entities[i]);
+    world.addMany(half, [](uint32_t i) { return Position{static_cast<float>(i), 0, 0}; });
+    for (uint32_t i = 0; i < entities.size(); ++i) {
+        ASSERT_EQ(world.value<Velocity>(entities[i]), velocityOf(i));
+        ASSERT_EQ(world.get<const Wide>(entities[i]).values[1], 2.0 * i);
+        ASSERT_EQ(world.get<const Health>(entities[i]).points, 3u);
+        ASSERT_TRUE(world.has<Frozen>(entities[i]));
+        ASSERT_EQ(world.has<Position>(entities[i]), i % 2 == 0);
+        if (i % 2 == 0) {
+            ASSERT_EQ(world.get<const Position>(entities[i]).x, static_cast<float>(i / 2));
+        }
+    }
+}
+
 TEST(World, AddAndRemoveKeepTheOtherValues)
 {
     World world;
@@ -122,6 +155,43 @@ TEST(World, ReusesIndicesWithNewGenerations)
                 "null entity");
     EXPECT_EXIT(static_cast<void>(world.get<Position>(second)), testing::ExitedWithCode(3),
                 "has no test.Position; it has: test.Health");
+}
+
+// Free indices are taken in runs where they follow each other; the ids are those of taking them one
+// by one, in whatever order they were given back.
+TEST(World, CreatesManyWithTheIdsOfOneByOne)
+{
+    constexpr uint32_t kCount = 3000;
+    for (const int order : {0, 1, 2, 3, 4}) {
+        World many, one;
+        std::vector<Entity> first(kCount), second(kCount + 500), third(second.size());
+        many.createMany(first, Health{1});
+        one.createMany(first, Health{1});
+        if (order == 1)
+            std::reverse(first.begin(), first.end());
+        else if (order == 2)
+            std::shuffle(first.begin(), first.end(), std::mt19937(5));
+        else if (order == 3) // runs of all lengths, up and down
+            for (uint32_t i = 0, length = 1; i + length <= kCount; i += length, ++length)
+                if (length % 2 == 1)
+                    std::reverse(first.begin() + i, first.begin() + i + length);
+        if (order == 4)
+            first.resize(kCount - 1); // one is left
+        for (World* world : {&many, &one})
+            for (const Entity entity : first)
+                world->destroy(entity);
+        for (int round = 0; round < 2; ++round) {
+            many.createMany(std::span(second), Health{2});
+            for (Entity& entity : third)
+                entity = one.create(Health{2});
+            ASSERT_EQ(second, third) << order;
+            for (uint32_t i = 0; i < second.size(); ++i)
+                ASSERT_TRUE(many.alive(second[i]));
+            many.destroyMany(std::span(second));
+            one.destroyMany(std::span(third));
+        }
+        EXPECT_EQ(many.count(), one.count());
+    }
 }
 
 TEST(World, DestroysMany)
