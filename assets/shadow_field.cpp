@@ -129,13 +129,19 @@ Result<void> validateFieldHead(const ShadowField& field)
     if (!inRange(field.radius, kMinFieldRadius, kMaxCoordinate))
         return Error{fmt::format("field: radius {} m, allowed {} to {}", field.radius,
                                  kMinFieldRadius, kMaxCoordinate)};
-    // A hair of room for the rounding of its centre.
-    if (const vec4 ball = field.inscribed;
-        !(ball.w >= 0) ||
-        (ball.w > 0 && !(length(vec3(ball) - field.center) + ball.w <= 1.001f * field.radius)))
-        return Error{fmt::format("field: inscribed sphere of radius {} m at {}, {}, {}, not within "
-                                 "the bounding sphere",
-                                 ball.w, ball.x, ball.y, ball.z)};
+    for (int i = 0; i < 4; ++i)
+        if (!inRange(field.inscribed[i], i < 3 ? -kMaxCoordinate : 0, kMaxCoordinate))
+            return Error{fmt::format("field: inscribed sphere: {} is {}",
+                                     i < 3 ? "a coordinate" : "the radius", field.inscribed[i])};
+    if (field.inscribed.w > 0) {
+        if (field.kind != FieldKind::Occlusion)
+            return Error{"field: an inscribed sphere, which only an occluder has"};
+        const float reach = length(vec3(field.inscribed) - field.center) + field.inscribed.w;
+        if (!(reach <= 1.001f * field.radius)) // a hair of room for rounding
+            return Error{fmt::format("field: the inscribed sphere reaches {} m from the centre, "
+                                     "the bounding sphere {}",
+                                     reach, field.radius)};
+    }
     if (!inRange(field.innerRadius, 1e-3f, 1e3f) || !inRange(field.outerRadius, 1e-3f, 1e3f) ||
         field.innerRadius >= field.outerRadius)
         return Error{fmt::format("field: shells from {} to {} bounding radii, allowed 0.001 < 1000",

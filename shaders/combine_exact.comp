@@ -71,7 +71,7 @@ uint listed(uint at) { return texelFetch(listTexels, int(gl_WorkGroupID.x * kLis
 
 Receiver receiver[kReceivers];
 ShNodal visibility[kReceivers], through[kReceivers]; // `through`: with what stands before a light
-float seen[kReceivers];
+float left[kReceivers];
 vec3 sum[kReceivers];
 mat3 axes; // object from world, of the receivers, without scale: where the nodes lie
 uint firstSkyNode;
@@ -80,33 +80,38 @@ Receiver inObject(uint v) { return turnReceiver(axes, receiver[v]); }
 
 vec3 skyNode(int n) { return texelFetch(skyNodeTexels, int(firstSkyNode) + n).rgb; }
 
-// Sets `seen`: what inscribed balls leave of an entity for each receiver. `hiders`: where in the lists its hiders stand.
-void look(vec4 sphere, uint hiders)
+float risen(vec4 sphere, uint v)
+{
+    return horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
+}
+
+// Sets `left`: what inscribed balls leave of an entity for each receiver. `hiders`: where in the lists its hiders stand.
+void findShadows(vec4 sphere, uint hiders)
 {
     if (!kHiders)
         return;
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-        seen[v] = 1.0;
+        left[v] = 1.0;
     for (uint bits = listed(hiders); bits != 0u; bits &= bits - 1u) {
-        const uint hider = listed(kListOccluders + uint(findLSB(bits)));
-        const vec4 ball = loadInstance(entryRow(hider)).inscribed;
+        const uint entry = listed(kListOccluders + uint(findLSB(bits)));
+        const GpuInstance hider = loadInstance(entryRow(entry));
         [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-            seen[v] *= mix(1.0, shadowWeight(receiver[v].position, ball, sphere), entryShare(hider));
+            left[v] *= unhidden(receiver[v].position, hider.inscribed, sphere,
+                                entryShare(entry) * risen(hider.sphere, v));
     }
 }
 
-// How much an entity counts for a receiver, after look().
+// How much an entity counts for a receiver, after findShadows().
 float entityWeight(uint entry, vec4 sphere, uint v)
 {
-    return (kHiders ? seen[v] : 1.0) * entryShare(entry) *
-           horizonWeight(receiver[v].normal, sphere.xyz - receiver[v].position, sphere.w);
+    return (kHiders ? left[v] : 1.0) * entryShare(entry) * risen(sphere, v);
 }
 
 void occlude(uint place)
 {
     const uint entry = listed(kListOccluders + place);
     const GpuInstance occluder = loadInstance(entryRow(entry));
-    look(occluder.sphere, kListHiders + place);
+    findShadows(occluder.sphere, kListHiders + place);
     const FieldEntity entity = instanceFieldIn(axes, occluder);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
         visibility[v] = shMultiply(visibility[v], occlusion(entity, receiver[v].position,
@@ -116,8 +121,8 @@ void occlude(uint place)
 // Adds the light at `at` of the lists to `sum`.
 void localLight(uint at)
 {
-    const uint entry = listed(at);
-    const GpuInstance light = loadInstance(entryRow(entry));
+    const uint lightEntry = listed(at);
+    const GpuInstance light = loadInstance(entryRow(lightEntry));
     const FieldEntity field = instanceFieldIn(axes, light);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
         through[v] = visibility[v];
@@ -126,7 +131,7 @@ void localLight(uint at)
         const uint place = uint(findLSB(bits));
         const uint entry = listed(kListOccluders + place);
         const GpuInstance occluder = loadInstance(entryRow(entry));
-        look(occluder.sphere, kListHiders + place);
+        findShadows(occluder.sphere, kListHiders + place);
         const FieldEntity entity = instanceFieldIn(axes, occluder);
         [[unroll]] for (uint v = 0u; v < kReceivers; ++v) {
             const vec3 position = receiver[v].position;
@@ -135,9 +140,9 @@ void localLight(uint at)
             through[v] = shMultiply(through[v], occlusion(entity, position, weight));
         }
     }
-    look(light.sphere, at + 3u);
+    findShadows(light.sphere, at + 3u);
     [[unroll]] for (uint v = 0u; v < kReceivers; ++v)
-        sum[v] += entityWeight(entry, light.sphere, v) * light.material.rgb *
+        sum[v] += entityWeight(lightEntry, light.sphere, v) * light.material.rgb *
                   lightThrough(transferNodal(through[v], inObject(v)), field, receiver[v]);
 }
 

@@ -37,15 +37,20 @@ Sh4 sampleField(FieldCell cell, FieldGrid grid, uint channel)
     return sum;
 }
 
+float risen(vec4 sphere, Receiver receiver)
+{
+    return horizonWeight(receiver.normal, sphere.xyz - receiver.position, sphere.w);
+}
+
 // How much an entity counts for the receiver; `hiders`: where in the lists its hiders stand.
 float entityWeight(uint entry, uint hiders, Receiver receiver)
 {
     const vec4 sphere = instances[entryRow(entry)].sphere;
-    float weight = entryShare(entry) * horizonWeight(receiver.normal, sphere.xyz - receiver.position, sphere.w);
+    float weight = entryShare(entry) * risen(sphere, receiver);
     for (uint bits = kHiders ? listed(hiders) : 0u; bits != 0u; bits &= bits - 1u) {
         const uint hider = listed(kListOccluders + uint(findLSB(bits)));
-        const vec4 ball = instances[entryRow(hider)].inscribed;
-        weight *= mix(1.0, shadowWeight(receiver.position, ball, sphere), entryShare(hider));
+        const GpuInstance g = instances[entryRow(hider)];
+        weight *= unhidden(receiver.position, g.inscribed, sphere, entryShare(hider) * risen(g.sphere, receiver));
     }
     return weight;
 }

@@ -5,9 +5,10 @@
 //   writes  lists [visible], cull.pairs, cull.dropped
 // Drops an occluder or light that is the receiver itself (its self-visibility says more; a light does not light its own
 // surface), whose influence ends before the cluster, whose sphere lies under the horizon of every receiver, or in the
-// shadow that a ball inside an occluder casts from every one (Zhou et al. 2005 section 4.2). Near and far: shaders/shared/order.h, taken from the cluster's centre, once per cluster where
-// the paper sorts per vertex; equal ones keep instance order. Where there are more than fit, the least important ones are
-// left out, and those hardly more important count in part, so that none appears or goes at once.
+// shadow that a ball inside an occluder casts from every one (Zhou et al. 2005 section 4.2). Near and far:
+// shaders/shared/order.h, taken from the cluster's centre, once per cluster where the paper sorts per vertex; equal ones
+// keep instance order. Where there are more than fit, the least important ones are left out, and those hardly more
+// important count in part, so that none appears or goes at once.
 // An insertion sort in private memory: one lane per cluster beats shared memory and barriers on lavapipe 20 times.
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/scene.glsl"
@@ -59,9 +60,20 @@ void insert(inout EntityList list, float key, float importance, uint row)
     rows[at] = row;
 }
 
+uint entry(EntityList list, uint i)
+{
+    return listEntry(rows[list.first + i], entityShare(importances[list.first + i], list.least));
+}
+
+struct ClusterPlace {
+    vec4 sphere; // world
+    vec3 axis;   // of the vertex normals
+    float cutoff;
+};
+
 // Finds what of a list lies in the shadow of an occluder's inscribed ball: sets `hiders`; returns, as bits, what lies
 // there for the whole cluster.
-uint findHidden(EntityList list, EntityList occluders, vec4 cluster)
+uint findHidden(EntityList list, EntityList occluders, ClusterPlace cluster)
 {
     uint balls = 0u;
     for (uint j = 0u; j < occluders.count; ++j)
@@ -71,11 +83,14 @@ uint findHidden(EntityList list, EntityList occluders, vec4 cluster)
     uint hidden = 0u;
     for (; balls != 0u; balls &= balls - 1u) {
         const uint j = uint(findLSB(balls));
-        const ClusterShadow shadow = clusterShadow(cluster, loadInstance(rows[j]).inscribed);
-        const bool whole = entityShare(importances[j], occluders.least) == 1.0;
+        const GpuInstance hider = loadInstance(rows[j]);
+        const ClusterShadow shadow = clusterShadow(cluster.sphere, hider.inscribed);
+        const bool whole =
+            entryShare(entry(occluders, j)) == 1.0 &&
+            lowestOver(hider.sphere.xyz - cluster.sphere.xyz, cluster.axis, cluster.cutoff) >= cluster.sphere.w;
         for (uint i = 0u; i < list.count; ++i) {
             const GpuInstance g = loadInstance(rows[list.first + i]);
-            const ShadowBounds bounds = shadowBounds(shadow, g.sphere.xyz - cluster.xyz, g.sphere.w);
+            const ShadowBounds bounds = shadowBounds(shadow, g.sphere.xyz - cluster.sphere.xyz, g.sphere.w);
             // A light's own surface does not hide it.
             const bool apart = rows[list.first + i] != rows[j] && uint(int(g.material1.z)) != rows[j] + 1u;
             hiders[list.first + i] |= apart && bounds.touched ? 1u << j : 0u;
@@ -99,11 +114,6 @@ uint placesOf(uint bits, uint count, uint hidden)
     for (; bits != 0u; bits &= bits - 1u)
         places |= 1u << placeOf(uint(findLSB(bits)), count, hidden);
     return places;
-}
-
-uint entry(EntityList list, uint i)
-{
-    return listEntry(rows[list.first + i], entityShare(importances[list.first + i], list.least));
 }
 
 void main()
@@ -140,9 +150,9 @@ void main()
         }
     }
 
-    const vec4 sphere = vec4(center, radius);
-    const uint hidden = kHiders ? findHidden(occluders, occluders, sphere) : 0u;
-    const uint hiddenLights = kHiders ? findHidden(lights, occluders, sphere) : 0u;
+    const ClusterPlace place = ClusterPlace(vec4(center, radius), axis, b.vertices.w);
+    const uint hidden = kHiders ? findHidden(occluders, occluders, place) : 0u;
+    const uint hiddenLights = kHiders ? findHidden(lights, occluders, place) : 0u;
     const uint kept = occluders.count - uint(bitCount(hidden));
 
     const uint first = slot * kListStride;
@@ -166,7 +176,7 @@ void main()
             possible |= weight > 0.0 ? 1u << place : 0u;
             certain += certain == place && weight == 1.0 ? 1u : 0u;
         }
-        before = min(before, certain);
+        before = (hiddenLights >> l & 1u) != 0u ? before : min(before, certain);
         const uint at = first + kListLights + kListLightStride * placeOf(l, lights.count, hiddenLights);
         lists[at] = entry(lights, l);
         lists[at + 1u] = before;

@@ -1,5 +1,7 @@
 #include "systems/scene_data.h"
 
+#include "shaders/shared/visibility.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -113,9 +115,9 @@ void checkNames(const SceneData& scene)
                         "a light shines by asset {}, which has no radiance field", light.asset);
 }
 
-// How large a ball must be to hide others, compared with the usual entity: smaller ones hide next
-// to nothing, and would only cost. Balls among their like are large enough (docs/decisions/0011).
-constexpr float kHiderSize = 0.9f;
+// How large a ball must be to hide others, compared with the usual entity: what smaller ones hide
+// is less than it costs (docs/decisions/0011).
+constexpr float kHiderSize = 1.2f;
 
 // Which instances hide others: [instances].
 std::vector<bool> findHiders(const SceneData& scene)
@@ -137,7 +139,8 @@ std::vector<bool> findHiders(const SceneData& scene)
     for (std::size_t i = 0; i < hiders.size(); ++i)
         if (const SceneInstance& instance = scene.instances[i]; instance.occluder) {
             const FieldInput& field = scene.fields[scene.meshes[*instance.occluder].field];
-            hiders[i] = instance.scale * field.inscribed.w >= kHiderSize * *middle;
+            hiders[i] = field.outerRadius >= kHiderReach &&
+                        instance.scale * field.inscribed.w >= kHiderSize * *middle;
         }
     return hiders;
 }

@@ -297,7 +297,7 @@ BakeResult bakeMesh(const std::vector<vec3>& positions, const std::vector<vec3>&
         for (std::size_t k = 0; k < 16; ++k)
             result.field.nodes[node[i]].c[k] = -samples.blocked[i].c[k];
     fillInside(result.field);
-    field.inscribed = inscribedSphere(scene, result.field);
+    field.inscribed = inscribedSphere(scene, result.field, directions.directions, directions.basis);
     readProbes(offGrid, result.probes);
     return result;
 }

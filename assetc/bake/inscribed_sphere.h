@@ -8,10 +8,13 @@ namespace penumbra {
 
 class EmbreeScene;
 
-// Centre and radius, object space, metres; radius 0: none was found. `field`: after fillInside;
-// `scene`: the surface, object space. The centre sees nothing of the outside and the ball meets no
-// triangle, so a ray that passes through the ball is blocked. A large one, not always the largest:
-// from the best of the coarse nodes inside, uphill in the distance from the surface.
-vec4 inscribedSphere(const EmbreeScene& scene, const FieldSamples& field);
+// Centre and radius, object space, metres; radius 0: none was found. `field`: after fillInside, no
+// shell left out; `scene`: the surface, object space. The ball meets no triangle, and its centre
+// and six points around it see nothing of the outside: a mesh need not be closed, but what is
+// hollow and can be looked into has no ball there. A large one, not always the largest: from the
+// best of the coarse nodes inside, uphill in the distance from the surface. `basis`: as
+// traceBlocked() has it, summing to the sphere's 4 pi.
+vec4 inscribedSphere(const EmbreeScene& scene, const FieldSamples& field,
+                     const std::vector<vec3>& directions, const std::vector<Sh4>& basis);
 
 } // namespace penumbra

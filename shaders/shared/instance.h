@@ -62,8 +62,8 @@ struct FieldInput {
 
 // Written by pass instance_update, read as rows of a texel buffer by the combine kernels and as
 // per-instance vertex attributes by pass raster. What a kernel needs of an occluder is in the first
-// five rows: on lavapipe a row takes about 60 instructions to read (docs/decisions/0005), so angles
-// are kept instead of matrices.
+// five rows, of one that hides others in the last too: on lavapipe a row takes about 60
+// instructions to read (docs/decisions/0005), so angles are kept instead of matrices.
 struct GpuInstance {
     vec4 sphere;    // of the field: centre and bounding radius, world, metres
     vec4 alphaBeta; // world from object = Rz(alpha) Ry(beta) Rz(gamma): cos, sin of alpha, of beta

@@ -22,6 +22,16 @@ PENUMBRA_FN bool facesAway(vec3 view, vec3 axis, float cutoff, float radius)
     return along * cutoff - across * sqrt(max(1.0f - cutoff * cutoff, 0.0f)) > radius;
 }
 
+// The smallest dot(n, to) over the cone of normals n of a cluster: |to| cos(theta + a). Where that
+// is negative, it may be less. to = a point - the cluster's centre.
+PENUMBRA_FN float lowestOver(vec3 to, vec3 axis, float cutoff)
+{
+    const float along = dot(axis, to);
+    const float across = length(to - along * axis);
+    return cutoff <= 0.0f ? -length(to)
+                          : along * cutoff - across * sqrt(max(1.0f - cutoff * cutoff, 0.0f));
+}
+
 // The largest dot(n, to) over the cone of normals n of a cluster: |to| cos(max(0, theta - a)).
 // to = a point - the cluster's centre.
 PENUMBRA_FN float highestOver(vec3 to, vec3 axis, float cutoff)
@@ -88,10 +98,17 @@ PENUMBRA_FN BallShadow ballShadow(vec3 toBall, float radius)
     return shadow;
 }
 
-// How much an entity counts for one receiver beside the inscribed ball of an occluder: 0 once its
-// sphere lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 from
-// where a quarter of its width comes out; so what is dropped as hidden had no weight.
-PENUMBRA_FN float shadowWeight(vec3 point, vec4 ball, vec4 sphere)
+// A ball hides as long as it is seen large, from this sine of its half-angle on whole, from the
+// first one on in part: so it has done before its object is out of influence, at kHiderReach radii.
+PENUMBRA_CONST float kHiderReach = 8.0f;
+PENUMBRA_CONST float kLeastHiderSine = 1.0f / 7.0f;
+PENUMBRA_CONST float kWholeHiderSine = 1.0f / 5.0f;
+
+// What the inscribed ball of an occluder leaves of an entity for one receiver: 0 once its sphere
+// lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 from where a
+// quarter of its width comes out; so what is dropped as hidden had no weight. counts: how much the
+// occluder itself counts for the receiver; it hides as much.
+PENUMBRA_FN float unhidden(vec3 point, vec4 ball, vec4 sphere, float counts)
 {
     const BallShadow shadow = ballShadow(vec3(ball) - point, ball.w);
     const vec3 to = vec3(sphere) - point;
@@ -99,17 +116,19 @@ PENUMBRA_FN float shadowWeight(vec3 point, vec4 ball, vec4 sphere)
     const float across = sqrt(max(dot(to, to) - along * along, 0.0f));
     const float depth = min(along * shadow.sine - across * shadow.cosine, along - shadow.distance);
     const float t = clamp(2.0f - 2.0f * depth / sphere.w, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    const float large =
+        clamp((shadow.sine - kLeastHiderSine) / (kWholeHiderSine - kLeastHiderSine), 0.0f, 1.0f);
+    return mix(1.0f, t * t * (3.0f - 2.0f * t), large * counts);
 }
 
-// Bounds of shadowWeight over the points of a cluster. From one at an offset the ball and a sphere
+// What bounds unhidden() over the points of a cluster. From one at an offset the ball and a sphere
 // look as they do from the cluster's centre when both are moved the other way, so a smaller and a
 // larger ball bound the cone; the plane turns, by less than `tilt` where the sphere is.
 struct ClusterShadow {
     BallShadow least, most; // with axis and distance the same
     float radius;           // of the cluster
     float turn;             // of the axis, at most
-    bool any;
+    bool whole, any;        // the ball is seen large enough from each point, from one
 };
 
 // cluster, ball: centre, radius. A ball of radius 0 casts no shadow.
@@ -121,12 +140,13 @@ PENUMBRA_FN ClusterShadow clusterShadow(vec4 cluster, vec4 ball)
     shadow.most = ballShadow(toBall, ball.w + cluster.w);
     shadow.radius = cluster.w;
     shadow.turn = cluster.w / max(shadow.least.distance - cluster.w, 1e-9f);
-    shadow.any = ball.w > 0.0f;
+    shadow.whole = ball.w >= kWholeHiderSine * (shadow.least.distance + cluster.w);
+    shadow.any = ball.w > 0.0f && ball.w >= kLeastHiderSine * (shadow.least.distance - cluster.w);
     return shadow;
 }
 
-// What holds of a sphere for the receivers of a cluster: shadowWeight is 0 for each; it may be less
-// than 1 for one.
+// What holds of a sphere for the receivers of a cluster: unhidden() is 0 for each, if the occluder
+// counts whole; it may be less than 1 for one.
 struct ShadowBounds {
     bool hidden, touched;
 };
@@ -140,7 +160,7 @@ PENUMBRA_FN ShadowBounds shadowBounds(ClusterShadow shadow, vec3 to, float spher
     const float behind = along - least.distance;
     const float tilt = (across + abs(behind)) * shadow.turn;
     ShadowBounds bounds;
-    bounds.hidden = least.sine > 0.0f && behind - tilt >= sphereRadius &&
+    bounds.hidden = shadow.whole && least.sine > 0.0f && behind - tilt >= sphereRadius &&
                     along * least.sine - across * least.cosine >= sphereRadius + shadow.radius;
     bounds.touched = shadow.any && behind + tilt > 0.5f * sphereRadius &&
                      (most.sine == 1.0f || along * most.sine - across * most.cosine >

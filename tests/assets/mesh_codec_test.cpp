@@ -46,7 +46,8 @@ TEST(MeshCodec, RoundTripKeepsOrderAndBits)
 
 TEST(MeshCodec, RoundTripKeepsTheFieldExactly)
 {
-    const MeshAsset mesh = sampleAsset();
+    MeshAsset mesh = sampleAsset();
+    mesh.field->inscribed = {0.2f, -0.1f, 0.3f, 0.5f};
     const auto decoded = decodeMeshAsset(*encodeMeshAsset(mesh));
     ASSERT_TRUE(decoded) << decoded.error().message;
     ASSERT_TRUE(decoded->field);

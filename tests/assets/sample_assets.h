@@ -58,7 +58,6 @@ inline ShadowField sampleField()
     ShadowField field;
     field.center = {0.1f, -0.2f, 0.3f};
     field.radius = 1.25f;
-    field.inscribed = {0.2f, -0.1f, 0.3f, 0.5f};
     field.bandScale = {0.1f, 0.2f, 0.3f, 0.4f};
     field.shellSides = {5, 3};
     field.directions = 1024;

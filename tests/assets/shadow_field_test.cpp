@@ -43,6 +43,19 @@ TEST(ShadowField, RefusesEachBrokenInvariant)
     EXPECT_TRUE(refuses([&](ShadowField& f) { f.center.z = nan; }));
     EXPECT_TRUE(refuses([](ShadowField& f) { f.radius = 0; }));
     EXPECT_TRUE(refuses([&](ShadowField& f) { f.radius = nan; }));
+    const auto refusesBall = [&](vec4 ball, FieldKind kind = FieldKind::Occlusion) {
+        return refuses([&](ShadowField& f) {
+            f.inscribed = ball;
+            f.kind = kind;
+        });
+    };
+    EXPECT_FALSE(refusesBall({0.5f, -0.2f, 0.3f, 0.8f}));
+    EXPECT_TRUE(refusesBall({0.5f, -0.2f, 0.3f, 0.9f})); // beyond the bounding sphere
+    EXPECT_TRUE(refusesBall({0.5f, -0.2f, 0.3f, 0.8f}, FieldKind::Radiance));
+    EXPECT_TRUE(refusesBall({0, 0, 0, -1}));
+    EXPECT_TRUE(refusesBall({0, 0, 0, nan}));
+    EXPECT_TRUE(refusesBall({0, nan, 0, 0}));
+    EXPECT_TRUE(refusesBall({0, 0, 0, INFINITY}));
     EXPECT_TRUE(refuses([](ShadowField& f) { f.innerRadius = 9; })); // beyond the outer one
     EXPECT_TRUE(refuses([](ShadowField& f) { f.outerRadius = INFINITY; }));
     EXPECT_TRUE(refuses([&](ShadowField& f) { f.bandScale[2] = nan; }));

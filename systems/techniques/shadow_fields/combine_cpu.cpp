@@ -215,11 +215,16 @@ void choose(std::vector<Candidate>& all, std::size_t limit)
 
 // Sets `hiders` (bits of places in `occluders`) and, with `drops`, `hidden` of a list.
 void findHidden(std::vector<Candidate>& list, std::span<const Candidate> occluders,
-                const CpuInstances& rows, vec4 cluster, bool drops)
+                const CpuInstances& rows, const ClusterSphere& s, float cutoff, bool drops)
 {
+    const vec4 cluster(s.center, s.radius);
     for (std::size_t j = 0; j < occluders.size(); ++j) {
         const std::uint32_t row = occluders[j].row;
-        const ClusterShadow shadow = clusterShadow(cluster, rows.instances[row].inscribed);
+        const GpuInstance& hider = rows.instances[row];
+        const ClusterShadow shadow = clusterShadow(cluster, hider.inscribed);
+        const bool whole =
+            entryShare(occluders[j].entry) == 1 &&
+            lowestOver(vec3(hider.sphere) - s.center, s.vertexAxis, cutoff) >= s.radius;
         for (Candidate& entity : list) {
             const GpuInstance& g = rows.instances[entity.row];
             const auto surface = static_cast<std::uint32_t>(g.material1.z);
@@ -228,7 +233,7 @@ void findHidden(std::vector<Candidate>& list, std::span<const Candidate> occlude
             const ShadowBounds bounds =
                 shadowBounds(shadow, vec3(g.sphere) - vec3(cluster), g.sphere.w);
             entity.hiders |= bounds.touched ? 1u << j : 0u;
-            entity.hidden |= drops && bounds.hidden && entryShare(occluders[j].entry) == 1;
+            entity.hidden |= drops && whole && bounds.hidden;
         }
     }
 }
@@ -263,8 +268,8 @@ ClusterEntities sortEntities(const SceneData& scene, const CpuInstances& rows,
 
     const std::vector<Candidate> all = occluders;
     const bool drops = (culls & kCullHidden) != 0;
-    findHidden(occluders, all, rows, vec4(s.center, s.radius), drops);
-    findHidden(lights, all, rows, vec4(s.center, s.radius), drops);
+    findHidden(occluders, all, rows, s, cutoff, drops);
+    findHidden(lights, all, rows, s, cutoff, drops);
     std::vector<Candidate> placed = occluders;
     std::stable_partition(placed.begin(), placed.end(),
                           [](const Candidate& occluder) { return !occluder.hidden; });
@@ -321,15 +326,18 @@ CpuInstances updateInstances(const SceneData& scene)
 float entityWeight(const CpuInstances& rows, const ClusterEntities& entities, std::uint32_t entry,
                    std::uint32_t hiders, vec3 position, vec3 normal)
 {
-    const vec4 sphere = rows.instances[entryRow(entry)].sphere;
-    float weight = entryShare(entry) * horizonWeight(normal, vec3(sphere) - position, sphere.w);
+    const auto counts = [&](std::uint32_t of) {
+        const vec4 sphere = rows.instances[entryRow(of)].sphere;
+        return entryShare(of) * horizonWeight(normal, vec3(sphere) - position, sphere.w);
+    };
+    float weight = counts(entry);
     for (std::uint32_t bits = hiders; bits != 0; bits &= bits - 1) {
         const auto place = static_cast<std::size_t>(std::countr_zero(bits));
-        const std::size_t seen = entities.occluders.size();
+        const std::size_t kept = entities.occluders.size();
         const std::uint32_t hider =
-            place < seen ? entities.occluders[place] : entities.hidden[place - seen];
-        const vec4 ball = rows.instances[entryRow(hider)].inscribed;
-        weight *= mix(1.0f, shadowWeight(position, ball, sphere), entryShare(hider));
+            place < kept ? entities.occluders[place] : entities.hidden[place - kept];
+        weight *= unhidden(position, rows.instances[entryRow(hider)].inscribed,
+                           rows.instances[entryRow(entry)].sphere, counts(hider));
     }
     return weight;
 }

@@ -34,11 +34,13 @@ TEST(Guide, Create)
     std::vector<Position> places(crowd.size());
     std::vector<Entity> others(crowd.size());
     world.createMany(others, std::span<const Position>(places), Frozen{}); // one value for each
-    world.createMany(crowd, [](uint32_t i) { return Health{i % 10}; }); // the same, made in place
+    std::vector<Entity> more(crowd.size());
+    world.createMany(more, [](uint32_t i) { return Health{i % 10}; }); // the same, made in place
     // [end]
     EXPECT_TRUE(world.has<Frozen>(one));
-    EXPECT_EQ(world.count(), 2001u);
+    EXPECT_EQ(world.count(), 3001u);
     EXPECT_EQ(world.get<const Health>(crowd[999]).points, 50u);
+    EXPECT_EQ(world.get<const Health>(more[999]).points, 9u);
 }
 
 TEST(Guide, Change)

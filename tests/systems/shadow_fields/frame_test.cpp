@@ -279,6 +279,14 @@ TEST_F(FrameTest, CullingChangesNothingInThePicture)
                                                      std::to_integer<int>(culled.picture[i])));
             // Bytes: a difference of 0.5 / 255 or less rounds to 0 or 1.
             EXPECT_LE(largest, 1) << off;
+            if (off == kCullHidden) { // what is dropped had no weight at all
+                ASSERT_EQ(drawn.radiance.size(), culled.radiance.size());
+                for (const std::uint32_t c : culled.visible)
+                    for (std::uint32_t v = 0; v < kClusterReceivers; ++v) {
+                        const std::size_t i = scene.data.clusters[c].firstRadiance + v;
+                        ASSERT_LT(length(drawn.radiance[i] - culled.radiance[i]), 1e-5f);
+                    }
+            }
             RecordProperty(fmt::format("{}{}", kernelName(kernel), off),
                            fmt::format("largest {}, pairs {} of {}", largest, culled.cull.pairs,
                                        drawn.cull.pairs));

@@ -237,19 +237,27 @@ TestScene makeBoulderTestScene()
 {
     TestScene scene;
     scene.assets.push_back(makeSphereAsset(0.5f, 16));
-    scene.assets.push_back(makeBoxAsset(vec3(2.4f, 0.1f, 2.4f), 96, false));
+    scene.assets.push_back(makeBoxAsset(vec3(0.2f), 7, false)); // a side is a cluster
     scene.assets.push_back(makeSphereLight(0.15f, vec3(20, 16, 10)));
     std::vector<SceneInstance> instances = {
-        {.mesh = 0, .position = vec3(0, 0.3f, 0), .scale = 2, .occluder = 0},
-        {.mesh = 1, .position = vec3(0, -0.1f, 0), .material = {vec3(0.7f), 0, 0}}};
+        {.mesh = 0, .position = vec3(0, 0.5f, 0), .scale = 2, .occluder = 0}};
+    for (int i = 0; i < 144; ++i) {
+        const vec3 at(0.4f * static_cast<float>(i % 12) - 2.2f, -0.2f,
+                      0.4f * static_cast<float>(i / 12) - 2.2f);
+        instances.push_back({.mesh = 1, .position = at, .material = {vec3(0.7f), 0, 0}});
+    }
     std::vector<SceneLight> lights;
     for (int i = 0; i < 9; ++i) {
         const float angle = 0.7f * static_cast<float>(i);
-        const vec3 at(1.5f * std::cos(angle), 0.5f, 1.5f * std::sin(angle));
-        if (i % 4 == 1)
-            lights.push_back({.asset = 2, .position = at, .scale = 2});
-        else
-            instances.push_back({.mesh = 0, .position = at, .scale = 0.9f, .occluder = 0});
+        const vec3 at(1.5f * std::cos(angle), 0.7f, 1.5f * std::sin(angle));
+        instances.push_back({.mesh = 0, .position = at, .scale = 0.9f, .occluder = 0});
+        if (i % 4 == 1) { // with a surface that blocks
+            instances.back().scale = 0.6f;
+            lights.push_back({.asset = 2,
+                              .position = at,
+                              .scale = 2,
+                              .owner = static_cast<std::uint32_t>(instances.size() - 1)});
+        }
     }
     assemble(scene, std::move(instances), std::move(lights));
     return scene;
