@@ -150,9 +150,9 @@ void main()
         }
     }
 
-    const ClusterPlace place = ClusterPlace(vec4(center, radius), axis, b.vertices.w);
-    const uint hidden = kHiders ? findHidden(occluders, occluders, place) : 0u;
-    const uint hiddenLights = kHiders ? findHidden(lights, occluders, place) : 0u;
+    const ClusterPlace here = ClusterPlace(vec4(center, radius), axis, b.vertices.w);
+    const uint hidden = kHiders ? findHidden(occluders, occluders, here) : 0u;
+    const uint hiddenLights = kHiders ? findHidden(lights, occluders, here) : 0u;
     const uint kept = occluders.count - uint(bitCount(hidden));
 
     const uint first = slot * kListStride;

@@ -209,7 +209,9 @@ private:
 
 Result<FieldChain> traceFieldChain(const FieldChainInput& in)
 {
-    const std::vector<ClusterEntities> visible = cullAndSort(in.data, in.rows, in.constants);
+    FrameConstants constants = in.constants;
+    constants.culls &= ~kCullHidden; // they have no weight, but each is a step of its own
+    const std::vector<ClusterEntities> visible = cullAndSort(in.data, in.rows, constants);
     const std::vector<ChainReceiver> receivers = chooseReceivers(in, visible);
     Objects objects;
     const auto need = [&](std::uint32_t row, std::uint32_t mesh) -> Result<void> {

@@ -8,6 +8,42 @@
 
 namespace penumbra::ecs {
 
+namespace {
+
+constexpr uint32_t kRunGroup = 64; // free indices that are taken at once
+
+// Two records or entities, each as one number.
+using Pair [[gnu::vector_size(16)]] = uint64_t;
+static_assert(std::endian::native == std::endian::little);
+
+// kRunGroup free records from index `low` on become entities at `place` and after it: the first one
+// is the lowest, or going down (kStep) the highest. Written as vectors because compilers leave the
+// way down, with one array forwards and one backwards, a loop of numbers (half as fast).
+template <int kStep>
+void takeGroup(void* records, uint64_t low, uint64_t place, void* entities)
+{
+    constexpr uint32_t kPairs = kRunGroup / 2;
+    constexpr uint64_t kLast = kRunGroup - 1;
+    auto* const from = static_cast<std::byte*>(records);
+    auto* const to = static_cast<std::byte*>(entities);
+    Pair index = {low, low + 1};
+    Pair at = kStep > 0 ? Pair{place, place + 1} : Pair{place + kLast, place + kLast - 1};
+    for (uint32_t i = 0; i < kPairs; ++i) {
+        const uint32_t k = kStep > 0 ? i : kPairs - 1 - i;
+        Pair generation;
+        std::memcpy(&generation, from + i * sizeof(Pair), sizeof(Pair));
+        generation &= 0xffffffffu;
+        const Pair record = at << 32 | generation, entity = generation << 32 | index;
+        const Pair turned = kStep > 0 ? entity : Pair{entity[1], entity[0]};
+        std::memcpy(from + i * sizeof(Pair), &record, sizeof(Pair));
+        std::memcpy(to + k * sizeof(Pair), &turned, sizeof(Pair));
+        index += 2;
+        at += kStep > 0 ? 2 : uint64_t{0} - 2;
+    }
+}
+
+} // namespace
+
 void EntityTable::grow(size_t count)
 {
     PENUMBRA_ASSERT(m_records.size() + count < kFree, "{} entities do not fit",
@@ -26,36 +62,6 @@ Entity EntityTable::allocateNewAt(uint32_t place)
     reserve(1);
     m_records.push_back({1, place});
     return {indexCount() - 1, 1};
-}
-
-// Two records or entities, each as one number.
-using Pair [[gnu::vector_size(16)]] = uint64_t;
-static_assert(std::endian::native == std::endian::little);
-
-// kRunGroup free records from index `low` on become entities at `place` and after it: the first one
-// is the lowest, or going down (kStep) the highest. Written as vectors because compilers leave the
-// way down, with one array forwards and one backwards, a loop of numbers (half as fast).
-template <int kStep>
-void takeGroup(void* records, uint64_t low, uint64_t place, void* entities)
-{
-    constexpr uint32_t kPairs = EntityTable::kRunGroup / 2;
-    constexpr uint64_t kLast = EntityTable::kRunGroup - 1;
-    auto* const from = static_cast<std::byte*>(records);
-    auto* const to = static_cast<std::byte*>(entities);
-    Pair index = {low, low + 1};
-    Pair at = kStep > 0 ? Pair{place, place + 1} : Pair{place + kLast, place + kLast - 1};
-    for (uint32_t i = 0; i < kPairs; ++i) {
-        const uint32_t k = kStep > 0 ? i : kPairs - 1 - i;
-        Pair generation;
-        std::memcpy(&generation, from + i * sizeof(Pair), sizeof(Pair));
-        generation &= 0xffffffffu;
-        const Pair record = at << 32 | generation, entity = generation << 32 | index;
-        const Pair turned = kStep > 0 ? entity : Pair{entity[1], entity[0]};
-        std::memcpy(from + i * sizeof(Pair), &record, sizeof(Pair));
-        std::memcpy(to + k * sizeof(Pair), &turned, sizeof(Pair));
-        index += 2;
-        at += kStep > 0 ? 2 : uint64_t{0} - 2;
-    }
 }
 
 // One run of free indices that follow each other, up or down (kStep), as they mostly do: then no

@@ -109,7 +109,6 @@ public:
     [[nodiscard]] uint32_t generation(uint32_t index) const { return m_records[index].generation; }
     [[nodiscard]] uint32_t count() const { return indexCount() - m_freeCount - m_retired; }
     [[nodiscard]] uint32_t indexCount() const { return static_cast<uint32_t>(m_records.size()); }
-    static constexpr uint32_t kRunGroup = 64; // free indices that are taken at once
     // Grows whenever an entity got another place: tells whether remembered places still hold.
     [[nodiscard]] uint64_t moves() const { return m_moves; }
     [[nodiscard]] size_t bytes() const;

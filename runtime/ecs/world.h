@@ -46,15 +46,15 @@ public:
     World(const World&) = delete;
     World& operator=(const World&) = delete;
 
-    // Where memory runs out or copying a value throws, the exception passes through and the world
-    // is as it was (…Many: addMany has done the entities before; the rest as one).
+    // Where memory runs out or copying or making a value throws, the exception passes through and
+    // the world is as it was (…Many: addMany has done the entities before; the rest as one).
 
     // --- Entities. All components arrive in one move.
     template <class... Ts>
     Entity create(Ts&&... values);
     // out.size() entities. Each argument is one value for all of them, a std::span<const T> of
-    // out.size() values, or a function that makes the value of place i: T(uint32_t i). It must not
-    // use the world.
+    // out.size() values, or a function that makes the value of place i, T(uint32_t i), and leaves
+    // the world as it is.
     template <class... Arguments>
     void createMany(std::span<Entity> out, const Arguments&... arguments);
     // With everything below it in the hierarchy.
@@ -79,8 +79,8 @@ public:
     template <class... Ts>
     void remove(Entity entity);
     // The same for all entities of a list, faster: those that lie in one archetype one after the
-    // other in the list move together. All alive and distinct; arguments as of createMany(). Not
-    // for Parent.
+    // other in the list move together. All alive and distinct; arguments as of createMany(),
+    // functions noexcept if they are to be as fast. Not for Parent.
     template <class... Arguments>
     void addMany(std::span<const Entity> entities, const Arguments&... arguments);
     template <class... Ts>

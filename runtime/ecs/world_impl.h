@@ -4,6 +4,8 @@
 #include "runtime/ecs/query_down.h"
 #include "runtime/ecs/world.h"
 
+#include <algorithm>
+
 namespace penumbra::ecs {
 
 inline void World::assertStructural([[maybe_unused]] Entity entity) const
@@ -62,11 +64,19 @@ void fillFrom(Archetype& archetype, uint32_t row, uint32_t count, const Function
     }
 }
 
+// No component: those have a name, and one that can be called stays a value.
+template <class T>
+inline constexpr bool kMakesValues = std::is_invocable_v<const T&, uint32_t> && !requires
+{
+    T::kName;
+};
+
 // createMany() arguments: T repeats one value, std::span<const T> gives one each, and so does a
 // function of the place in the list.
 template <class T>
 struct BulkArgument {
     using Component = T;
+    static constexpr bool kFails = false; // to tell the values, but for copies of them
     static void check(const T&, size_t) {}
     // Rows [row, row + count), from the value of place `first` on.
     static void fill(Archetype& archetype, uint32_t row, uint32_t count, const T& value, uint32_t)
@@ -78,6 +88,7 @@ struct BulkArgument {
 template <class T, size_t kExtent>
 struct BulkArgument<std::span<T, kExtent>> {
     using Component = std::remove_const_t<T>;
+    static constexpr bool kFails = false;
     static void check(std::span<T, kExtent> values, size_t count)
     {
         if (values.size() != count) [[unlikely]]
@@ -91,9 +102,10 @@ struct BulkArgument<std::span<T, kExtent>> {
     static const T& one(std::span<T, kExtent> values, uint32_t i) { return values[i]; }
 };
 template <class T>
-requires std::is_invocable_v<const T&, uint32_t>
+requires kMakesValues<T>
 struct BulkArgument<T> {
     using Component = std::remove_cvref_t<std::invoke_result_t<const T&, uint32_t>>;
+    static constexpr bool kFails = !std::is_nothrow_invocable_v<const T&, uint32_t>;
     static void check(const T&, size_t) {}
     static void fill(Archetype& archetype, uint32_t row, uint32_t count, const T& value,
                      uint32_t first)
@@ -192,7 +204,10 @@ void World::createMany(std::span<Entity> out, const Arguments&... arguments)
     Archetype& archetype =
         roomFor(componentSet<typename BulkArgument<Arguments>::Component...>(), count);
     const uint32_t row = archetype.count();
-    fillAll(archetype, row, count, arguments...);
+    {
+        const IterationGuard guard(m_iterating); // functions must leave the world as it is
+        fillAll(archetype, row, count, arguments...);
+    }
     appendNew(archetype, out);
     if constexpr ((std::is_same_v<typename BulkArgument<Arguments>::Component, Parent> || ...))
         for (const Entity entity : out)
@@ -268,9 +283,11 @@ void World::addMany(std::span<const Entity> entities, const Arguments&... argume
         const auto run = entities.subspan(done, length);
         Archetype& from = *place(run[0]).archetype;
         Archetype& to = withSet(from, set);
-        const bool plainAndNew =
-            (kIsPlain<typename BulkArgument<Arguments>::Component> && ...) && &to != &from;
-        if (plainAndNew) {
+        // Once moved, a run has to get its values.
+        constexpr bool kCannotFail = ((kIsPlain<typename BulkArgument<Arguments>::Component> &&
+                                       !BulkArgument<Arguments>::kFails) &&
+                                      ...);
+        if (kCannotFail && &to != &from) {
             const uint32_t row = moveRun(run, from, to);
             (BulkArgument<Arguments>::fill(to, row, static_cast<uint32_t>(length), arguments,
                                            static_cast<uint32_t>(done)),

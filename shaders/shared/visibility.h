@@ -107,7 +107,8 @@ PENUMBRA_CONST float kWholeHiderSine = 1.0f / 5.0f;
 // What the inscribed ball of an occluder leaves of an entity for one receiver: 0 once its sphere
 // lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 from where a
 // quarter of its width comes out; so what is dropped as hidden had no weight. counts: how much the
-// occluder itself counts for the receiver; it hides as much.
+// occluder itself counts for the receiver; it hides
+// as much, but for the fade of its field.
 PENUMBRA_FN float unhidden(vec3 point, vec4 ball, vec4 sphere, float counts)
 {
     const BallShadow shadow = ballShadow(vec3(ball) - point, ball.w);

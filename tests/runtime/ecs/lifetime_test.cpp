@@ -235,6 +235,10 @@ TEST_F(Lifetime, ACopyThatThrowsChangesNothing)
         failing(copies, [&] { world.createMany(more, Health{}, value); });
         failing(copies,
                 [&] { world.createMany(more, Position{}, [&](uint32_t i) { return values[i]; }); });
+        failing(0, [&] {
+            world.addMany({&bare, 1},
+                          [&](uint32_t) -> Velocity { throw std::runtime_error("no value"); });
+        });
     }
 }
 

@@ -70,6 +70,39 @@ TEST(Hidden, WhatIsInSightCounts)
     EXPECT_EQ(unhidden(vec3(0), vec4(0, 2, 0, 0), vec4(0, 4, 0, 0.01f), 1), 1); // no ball
 }
 
+// One that counts in part hides in part, and from afar a ball hides less and less.
+TEST(Hidden, ABallHidesAsMuchAsItsObjectCounts)
+{
+    const vec4 ball(0, 2, 0, 1), behind(0, 4, 0, 0.5f);
+    EXPECT_EQ(unhidden(vec3(0), ball, behind, 0), 1);
+    EXPECT_FLOAT_EQ(unhidden(vec3(0), ball, behind, 0.25f), 0.75f);
+    const auto from = [&](float distance) {
+        return unhidden(vec3(0, 2 - distance, 0), ball, vec4(0, 4, 0, 0.1f), 1);
+    };
+    EXPECT_EQ(from(4.9f), 0);
+    EXPECT_NEAR(from(35.0f / 6), 0.5, 0.01); // a sine half-way from 1/5 to 1/7
+    EXPECT_EQ(from(7.01f), 1);
+}
+
+TEST(Hidden, NoNormalOfAConeSeesLowerThanItsLowest)
+{
+    Random random;
+    int positive = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const vec3 axis(0, 1, 0), to = random.inBall(vec4(0, 0.7f, 0, 1));
+        const float cutoff = random.uniform(-0.2f, 1);
+        const float lowest = lowestOver(to, axis, cutoff);
+        positive += lowest > 0;
+        for (int k = 0; k < 20 && lowest > 0; ++k) {
+            const float cosine = random.uniform(cutoff, 1), turn = random.uniform(0, 7);
+            const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f));
+            const vec3 normal(sine * std::cos(turn), cosine, sine * std::sin(turn));
+            ASSERT_GE(dot(normal, to), lowest - 1e-5f);
+        }
+    }
+    EXPECT_GT(positive, 2000);
+}
+
 TEST(Hidden, ClustersAgreeWithTheirReceivers)
 {
     Random random;
@@ -168,6 +201,12 @@ TEST(Hidden, LargeOccludersHideOthers)
     EXPECT_EQ(scene.hiders, (std::vector<bool>{false, true, false, false}));
     EXPECT_NEAR(updateInstances(scene).instances[1].inscribed.w, 1, 0.03);
     EXPECT_EQ(updateInstances(scene).instances[0].inscribed.w, 0);
+    MeshAsset near = ball; // what is out of influence so soon could not fade before
+    near.field->outerRadius = 6;
+    EXPECT_FALSE(
+        buildSceneData(std::array<const MeshAsset*, 2>{&ball, &near},
+                       {{.mesh = 0, .occluder = 0}, {.mesh = 0, .scale = 2, .occluder = 1}})
+            .hiders[1]);
 }
 
 class BehindABall : public ::testing::TestWithParam<Kernel> {};
