@@ -118,7 +118,8 @@ void occlude(uint place)
                                                             entityWeight(entry, occluder.sphere, v)));
 }
 
-// Adds the light at `at` of the lists to `sum`.
+// Adds the light at `at` of the lists to `sum`. The loops over receivers stand inside the one over occluders: Mesa
+// unrolls no loop that holds another, and would keep `visibility` in memory (docs/benchmarks.md, Local lights).
 void localLight(uint at)
 {
     const uint lightEntry = listed(at);

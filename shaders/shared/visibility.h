@@ -98,25 +98,40 @@ PENUMBRA_FN BallShadow ballShadow(vec3 toBall, float radius)
     return shadow;
 }
 
-// A ball hides as long as it is seen large, from this sine of its half-angle on whole, from the
-// first one on in part: so it has done before its object is out of influence, at kHiderReach radii.
+// A ball hides whole from this sine of its half-angle on, in part from the least one on: so it has
+// done before its object is out of influence, at kHiderReach radii. There a ball that lies in the
+// bounding sphere is at least 8 of its own radii away, wherever in the sphere.
 PENUMBRA_CONST float kHiderReach = 8.0f;
 PENUMBRA_CONST float kLeastHiderSine = 1.0f / 7.0f;
 PENUMBRA_CONST float kWholeHiderSine = 1.0f / 5.0f;
 
+// A sphere begins to be hidden when its centre lies so deep in the shadow, in its radii: with a
+// quarter of its width outside. Why then: docs/decisions/0011.
+PENUMBRA_CONST float kHidingDepth = 0.5f;
+
+// A point from the cone's tip: along the axis, and across it.
+PENUMBRA_FN vec2 alongAcross(BallShadow shadow, vec3 to)
+{
+    const float along = dot(to, shadow.axis);
+    return vec2(along, sqrt(max(dot(to, to) - along * along, 0.0f)));
+}
+
+// How deep such a point lies in the cone, metres; negative outside.
+PENUMBRA_FN float coneDepth(BallShadow shadow, vec2 at)
+{
+    return at.x * shadow.sine - at.y * shadow.cosine;
+}
+
 // What the inscribed ball of an occluder leaves of an entity for one receiver: 0 once its sphere
-// lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 from where a
-// quarter of its width comes out; so what is dropped as hidden had no weight. counts: how much the
-// occluder itself counts for the receiver; it hides
-// as much, but for the fade of its field.
+// lies wholly in the ball's shadow, where the products of order 4 would still leak, 1 down
+// to kHidingDepth; so what is dropped as hidden had no weight. counts: how much the occluder itself
+// counts for the receiver, by its share and the horizon; it hides as much.
 PENUMBRA_FN float unhidden(vec3 point, vec4 ball, vec4 sphere, float counts)
 {
     const BallShadow shadow = ballShadow(vec3(ball) - point, ball.w);
-    const vec3 to = vec3(sphere) - point;
-    const float along = dot(to, shadow.axis);
-    const float across = sqrt(max(dot(to, to) - along * along, 0.0f));
-    const float depth = min(along * shadow.sine - across * shadow.cosine, along - shadow.distance);
-    const float t = clamp(2.0f - 2.0f * depth / sphere.w, 0.0f, 1.0f);
+    const vec2 at = alongAcross(shadow, vec3(sphere) - point);
+    const float depth = min(coneDepth(shadow, at), at.x - shadow.distance);
+    const float t = clamp((1.0f - depth / sphere.w) / (1.0f - kHidingDepth), 0.0f, 1.0f);
     const float large =
         clamp((shadow.sine - kLeastHiderSine) / (kWholeHiderSine - kLeastHiderSine), 0.0f, 1.0f);
     return mix(1.0f, t * t * (3.0f - 2.0f * t), large * counts);
@@ -155,17 +170,16 @@ struct ShadowBounds {
 // to = the sphere's centre - the cluster's.
 PENUMBRA_FN ShadowBounds shadowBounds(ClusterShadow shadow, vec3 to, float sphereRadius)
 {
-    const BallShadow least = shadow.least, most = shadow.most;
-    const float along = dot(to, least.axis);
-    const float across = sqrt(max(dot(to, to) - along * along, 0.0f));
-    const float behind = along - least.distance;
-    const float tilt = (across + abs(behind)) * shadow.turn;
+    const vec2 at = alongAcross(shadow.least, to);
+    const float behind = at.x - shadow.least.distance;
+    const float tilt = (at.y + abs(behind)) * shadow.turn;
+    const float begins = kHidingDepth * sphereRadius;
     ShadowBounds bounds;
-    bounds.hidden = shadow.whole && least.sine > 0.0f && behind - tilt >= sphereRadius &&
-                    along * least.sine - across * least.cosine >= sphereRadius + shadow.radius;
-    bounds.touched = shadow.any && behind + tilt > 0.5f * sphereRadius &&
-                     (most.sine == 1.0f || along * most.sine - across * most.cosine >
-                                               0.5f * sphereRadius - shadow.radius);
+    bounds.hidden = shadow.whole && shadow.least.sine > 0.0f && behind - tilt >= sphereRadius &&
+                    coneDepth(shadow.least, at) >= sphereRadius + shadow.radius;
+    bounds.touched =
+        shadow.any && behind + tilt > begins &&
+        (shadow.most.sine == 1.0f || coneDepth(shadow.most, at) > begins - shadow.radius);
     return bounds;
 }
 
