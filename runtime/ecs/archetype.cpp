@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 namespace penumbra::ecs {
@@ -65,7 +66,7 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
     m_rowChanges.reserve(order.size()); // they stay where they are
     for (const ComponentId id : order)
         if (componentInfo(id).rowChanges)
-            m_columnVersions[m_columnOf[id]].rows = &m_rowChanges.emplace_back(segmentRows());
+            m_columnVersions[m_columnOf[id]].rows = &m_rowChanges.emplace_back(m_segmentShift);
     setBlockShift(std::min(rowShift(kFirstBlockBytes, m_rowBytes), m_segmentShift));
 }
 
@@ -149,7 +150,7 @@ void Archetype::reserve(uint32_t rows)
     const uint32_t segments = (rows + segmentRows() - 1) >> m_segmentShift;
     if (m_versions.size() < size_t{segments} * m_columns.size()) {
         for (RowChanges& changes : m_rowChanges)
-            changes.resize(segments);
+            changes.resize(segments << m_segmentShift);
         m_versions.resize(size_t{segments} * m_columns.size());
     }
     reserveSparingly(m_entities, rows);
@@ -168,18 +169,37 @@ uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
     return row;
 }
 
+void Archetype::markRows(uint32_t column, uint32_t row, uint32_t count, const Stamp& stamp)
+{
+    ColumnVersions& versions = startVersion(column, stamp);
+    const uint32_t end = row + count;
+    for (uint32_t at = row & ~m_segmentMask; at < end; at += segmentRows())
+        m_versions[versionPlace(column, at)] = stamp.version;
+    if (versions.rows != nullptr)
+        versions.rows->mark(row, count);
+}
+
 void Archetype::markStructural(uint32_t row, uint32_t added, Stamp stamp)
 {
-    for (const uint32_t end = row + added; row < end;) {
-        const uint32_t first = row & (segmentRows() - 1);
-        const uint32_t length = std::min(segmentRows() - first, end - row);
-        for (uint32_t column = 0; column < m_columns.size(); ++column)
-            if (m_columns[column].lane == 0)
-                markRows(column, row >> m_segmentShift, first, length, stamp);
-        m_stampedSegment = row >> m_segmentShift;
-        row += length;
-    }
+    if (added == 0)
+        return;
+    for (uint32_t column = 0; column < m_columns.size(); ++column)
+        if (m_columns[column].lane == 0)
+            markRows(column, row, added, stamp);
+    m_stampedSegment = (row + added - 1) >> m_segmentShift;
     m_stampedVersion = stamp.version;
+}
+
+// Threads that mark segments of one column may all find that it is the first time.
+void Archetype::startVersion(ColumnVersions& versions, const Stamp& stamp)
+{
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    const uint64_t last = newest(versions);
+    if (versions.rows != nullptr && last <= stamp.frameBase)
+        versions.rows->startFrame(last);
+    if (last < stamp.version)
+        __atomic_store_n(&versions.newest, stamp.version, __ATOMIC_RELEASE);
 }
 
 void Archetype::destroyRow(uint32_t row)
@@ -187,13 +207,6 @@ void Archetype::destroyRow(uint32_t row)
     for (uint32_t column = 0; column < m_columns.size(); ++column)
         if (const ComponentLife* life = m_columns[column].life)
             life->destroy(at(column, row), 1);
-}
-
-void Archetype::markAllRows(uint32_t column, Stamp stamp)
-{
-    for (uint32_t segment = 0; segment < segmentCount(); ++segment)
-        markRows(column, segment, 0, std::min(segmentRows(), count() - (segment << m_segmentShift)),
-                 stamp);
 }
 
 Entity Archetype::closeGap(uint32_t row, Stamp stamp)

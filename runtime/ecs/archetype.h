@@ -124,39 +124,34 @@ public:
     }
 
     // Change marks. `column` is the first column of a component.
-    void markRow(uint32_t column, uint32_t row, Stamp stamp)
+    void markRow(uint32_t column, uint32_t row, const Stamp& stamp)
     {
-        const uint32_t segment = row >> m_segmentShift;
-        touch(column, segment, stamp);
-        if (RowChanges* const rows = m_columnVersions[column].rows)
-            rows->mark(segment, row & m_segmentMask);
+        ColumnVersions& versions = startVersion(column, stamp);
+        m_versions[versionPlace(column, row)] = stamp.version;
+        if (versions.rows != nullptr)
+            versions.rows->mark(row);
     }
     // markRow() for a component known to have bits per row, or none. False, and nothing done, if it
-    // is the first of its segment in this version: that takes longer, and wants a function of its
-    // own.
+    // is the first of its column in this version: that takes longer, and wants a function of its
+    // own. No other branches: rows written by id come from anywhere.
     template <bool kRowChanges>
     [[nodiscard]] bool markAgain(uint32_t column, uint32_t row, const Stamp& stamp)
     {
-        const uint32_t segment = row >> m_segmentShift;
-        if (m_versions[size_t{segment} * m_columnCount + column] != stamp.version)
+        const ColumnVersions& versions = m_columnVersions[column];
+        if (newest(versions) != stamp.version)
             return false;
+        m_versions[versionPlace(column, row)] = stamp.version;
         if constexpr (kRowChanges)
-            m_columnVersions[column].rows->mark(segment, row & m_segmentMask);
+            versions.rows->mark(row);
         return true;
     }
-    // Rows count from the segment's start.
-    void markRows(uint32_t column, uint32_t segment, uint32_t row, uint32_t count, Stamp stamp)
-    {
-        touch(column, segment, stamp);
-        if (RowChanges* const rows = m_columnVersions[column].rows)
-            rows->mark(segment, row, count);
-    }
+    void markRows(uint32_t column, uint32_t row, uint32_t count, const Stamp& stamp);
     // All rows. Without bits per row, two stores, however many segments there are.
     template <bool kRowChanges>
     void markAll(uint32_t column, Stamp stamp)
     {
         if constexpr (kRowChanges)
-            return markAllRows(column, stamp);
+            return markRows(column, 0, count(), stamp);
         m_columnVersions[column].all = stamp.version;
         __atomic_store_n(&m_columnVersions[column].newest, stamp.version, __ATOMIC_RELAXED);
     }
@@ -169,7 +164,7 @@ public:
     // The newest of all segments.
     [[nodiscard]] uint64_t version(uint32_t column) const
     {
-        return __atomic_load_n(&m_columnVersions[column].newest, __ATOMIC_RELAXED);
+        return newest(m_columnVersions[column]);
     }
     // Rows of a segment that may have changed after `since`: see RowChanges. All of a changed one
     // for a component that did not opt in.
@@ -178,7 +173,8 @@ public:
         if (version(column, segment) <= since)
             return {};
         const RowChanges* const rows = m_columnVersions[column].rows;
-        return rows == nullptr ? ChangedBits{~uint64_t{0}} : rows->changed(segment, since);
+        return rows == nullptr ? ChangedBits{~uint64_t{0}}
+                               : rows->changed(segment << m_segmentShift, since);
     }
 
     // Disabled rows (World::setEnabled). A row that is enabled again counts as changed: readers
@@ -207,7 +203,6 @@ private:
     void setLayout() { m_layout = m_blocks.size() == 1 && m_disabled.count() == 0 ? m_layouts : 0; }
     void growFirstBlock();
     void destroyRow(uint32_t row);
-    void markAllRows(uint32_t column, Stamp stamp);
     void markStructural(uint32_t row, uint32_t count, Stamp stamp);
     // The same for one row. Rows come and go one after the other in one segment: if all its columns
     // have the version already, only the row bits are left to set.
@@ -217,28 +212,31 @@ private:
         if (segment != m_stampedSegment || stamp.version != m_stampedVersion)
             return markStructural(row, 1, stamp);
         for (RowChanges& changes : m_rowChanges)
-            changes.mark(segment, row & (segmentRows() - 1));
+            changes.mark(row);
     }
-    // Different columns, and different segments of one column, may be touched at once; a column is
-    // only ever written under one version at a time.
-    void touch(uint32_t column, uint32_t segment, Stamp stamp)
-    {
-        uint64_t& version = m_versions[size_t{segment} * m_columnCount + column];
-        if (version == stamp.version)
-            return;
-        ColumnVersions& versions = m_columnVersions[column];
-        if (versions.rows != nullptr && version <= stamp.frameBase)
-            versions.rows->startFrame(segment, version);
-        version = stamp.version;
-        if (this->version(column) < stamp.version)
-            __atomic_store_n(&versions.newest, stamp.version, __ATOMIC_RELAXED);
-    }
-
     struct ColumnVersions {
-        uint64_t newest = 0;        // of all segments
+        uint64_t newest = 0;        // of all segments; read and written atomically
         uint64_t all = 0;           // when all rows were last marked at once; 0 with row changes
         RowChanges* rows = nullptr; // on the first lane of a component that has bits per row
     };
+    [[nodiscard]] static uint64_t newest(const ColumnVersions& versions)
+    {
+        return __atomic_load_n(&versions.newest, __ATOMIC_ACQUIRE);
+    }
+    // To call before each mark. Different columns, and different segments of one column, may be
+    // marked at once; a column is only ever written under one version at a time.
+    ColumnVersions& startVersion(uint32_t column, const Stamp& stamp)
+    {
+        ColumnVersions& versions = m_columnVersions[column];
+        if (newest(versions) < stamp.version) [[unlikely]]
+            startVersion(versions, stamp);
+        return versions;
+    }
+    static void startVersion(ColumnVersions& versions, const Stamp& stamp);
+    [[nodiscard]] size_t versionPlace(uint32_t column, uint32_t row) const
+    {
+        return size_t{row >> m_segmentShift} * m_columnCount + column;
+    }
 
     // Walks touch the first two cache lines alone.
     std::vector<Entity> m_entities;      // [count]

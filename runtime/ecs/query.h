@@ -137,14 +137,14 @@ private:
     }
     [[nodiscard]] bool archetypePasses(const Match& match) const;
     [[nodiscard]] bool segmentPasses(const Match& match, uint32_t segment) const;
-    // These rows are about to be written: all; `count` from `row` of a segment.
+    // These rows are about to be written: all; `count` from `row`.
     void markAll(const Match& match) const;
-    void mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const;
+    void mark(const Match& match, uint32_t row, uint32_t count) const;
     // In the columns with, or in those without bits by row.
     uint16_t* listChanged(const Match& match, uint32_t segment, uint32_t offset,
                           uint16_t* end) const;
     template <bool kByRow>
-    void markChanged(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const;
+    void markChanged(const Match& match, uint32_t row) const;
     template <class Mark>
     static void forWritten(const Match& match, Mark&& mark); // mark(kRowChanges, column)
 

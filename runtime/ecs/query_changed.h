@@ -26,12 +26,11 @@ bool Query<Terms...>::archetypePasses(const Match& match) const
 
 template <class... Terms>
 template <bool kByRow>
-void Query<Terms...>::markChanged(const Match& match, uint32_t segment, uint32_t row,
-                                  uint32_t count) const
+void Query<Terms...>::markChanged(const Match& match, uint32_t row) const
 {
     forWritten(match, [&](auto rowChanges, uint32_t column) {
         if constexpr (rowChanges() == kByRow)
-            match.archetype->markRows(column, segment, row, count, m_stamp);
+            match.archetype->markRow(column, row, m_stamp);
     });
 }
 
@@ -92,13 +91,12 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, ui
         const uint16_t* const before = end;
         end = listChanged(match, s, (s - segment) << shift, end);
         if (end != before)
-            markChanged<false>(match, s, 0, 1); // once; bits of rows one by one
+            markChanged<false>(match, s << shift); // once; bits of rows one by one
     }
     const auto columns = columnPointers(match, first, FlatIndices());
     const Entity* const entities = archetype.entities().data() + first;
     for (const uint16_t* row = changed.data(); row < end; ++row) {
-        markChanged<true>(match, segment + (*row >> shift), *row & (archetype.segmentRows() - 1),
-                          1);
+        markChanged<true>(match, first + *row);
         callRow(f, entities, *row, columns, DataIndices());
     }
 }

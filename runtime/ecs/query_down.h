@@ -47,13 +47,8 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
             continue;
         const Archetype& archetype = *run.archetype;
         const bool skipsSome = skips(archetype); // then rows are marked one by one
-        for (uint32_t row = run.row; !kReadOnly && !skipsSome && row < run.row + run.count;) {
-            const uint32_t first = row & (archetype.segmentRows() - 1);
-            const uint32_t length =
-                std::min(archetype.segmentRows() - first, run.row + run.count - row);
-            mark(*match, row >> archetype.segmentShift(), first, length);
-            row += length;
-        }
+        if (!skipsSome)
+            mark(*match, run.row, run.count);
         const auto columns = columnPointers(*match, run.row, FlatIndices());
         [[maybe_unused]] const Entity* const entities = archetype.entities().data() + run.row;
         uint32_t parentSlot = kNone;
@@ -62,8 +57,7 @@ void Query<Terms...>::eachDown(const Hierarchy& hierarchy, F&& f) const
             if (skipsSome) [[unlikely]] {
                 if (archetype.disabled().test(run.row + i))
                     continue;
-                mark(*match, (run.row + i) >> archetype.segmentShift(),
-                     (run.row + i) & (archetype.segmentRows() - 1), 1);
+                mark(*match, run.row + i, 1);
             }
             if (const uint32_t slot = parentSlots[run.slot + i]; slot != parentSlot) {
                 parentSlot = slot;

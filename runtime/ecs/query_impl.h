@@ -104,10 +104,10 @@ void Query<Terms...>::forWritten(const Match& match, Mark&& mark)
 }
 
 template <class... Terms>
-void Query<Terms...>::mark(const Match& match, uint32_t segment, uint32_t row, uint32_t count) const
+void Query<Terms...>::mark(const Match& match, uint32_t row, uint32_t count) const
 {
     forWritten(match, [&](auto, uint32_t column) {
-        match.archetype->markRows(column, segment, row, count, m_stamp);
+        match.archetype->markRows(column, row, count, m_stamp);
     });
 }
 
@@ -224,7 +224,7 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::callMarked(F& f, const Run& run) const
 {
-    mark(*run.match, run.segment, run.row, run.count);
+    mark(*run.match, run.first(), run.count);
     callRun(f, *run.match, run.first(), run.count, FlatIndices());
 }
 
@@ -247,7 +247,7 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::callSegment(F& f, const Run& run, uint32_t ordinal) const
 {
-    mark(*run.match, run.segment, run.row, run.count);
+    mark(*run.match, run.first(), run.count);
     const auto columns = columnPointers(*run.match, run.first(), FlatIndices());
     [&]<size_t... k>(std::index_sequence<k...>)
     {

@@ -136,8 +136,7 @@ void Query<Terms...>::parallelEach(F&& f) const
             const uint32_t rows = archetype.segmentRows();
             const uint32_t first = task.segment * rows;
             const uint32_t count = std::min(task.count * rows, archetype.count() - first);
-            for (uint32_t row = 0; !kReadOnly && row < count; row += rows)
-                mark(*task.match, task.segment + row / rows, 0, std::min(rows, count - row));
+            mark(*task.match, first, count);
             callRun(f, *task.match, first, count, FlatIndices());
         };
         const auto count = static_cast<uint32_t>(tasks.size());

@@ -1,22 +1,27 @@
 #include "runtime/ecs/row_changes.h"
 
-#include <algorithm>
-
 namespace penumbra::ecs {
 
-void RowChanges::resize(uint32_t segmentCount)
+void RowChanges::resize(uint32_t rows)
 {
-    m_bits.resize(size_t{segmentCount} * 2 * m_words);
-    m_from.resize(segmentCount);
+    m_fresh.resize(rows >> m_shift);
+    m_older.resize(rows >> m_shift);
 }
 
-void RowChanges::mark(uint32_t segment, uint32_t row, uint32_t count)
+void RowChanges::startFrame(uint64_t version)
 {
-    uint64_t* const words = fresh(segment);
+    m_fresh.swap(m_older);
+    std::fill(m_fresh.begin(), m_fresh.end(), 0);
+    m_olderFrom = m_freshFrom;
+    m_freshFrom = version;
+}
+
+void RowChanges::mark(uint32_t row, uint32_t count)
+{
     for (const uint32_t end = row + count; row < end;) {
-        const uint32_t bit = row % 64;
-        const uint32_t length = std::min(64 - bit, end - row);
-        words[row / 64] |= (~uint64_t{0} >> (64 - length)) << bit;
+        const uint32_t bit = row & m_mask;
+        const uint32_t length = std::min(m_mask + 1 - bit, end - row);
+        m_fresh[row >> m_shift] |= (~uint64_t{0} >> (64 - length)) << bit;
         row += length;
     }
 }

@@ -1,9 +1,12 @@
 // Which rows of one column changed, for components that opt in with kRowChanges: two bits per row.
-// `fresh` holds the rows written in the latest frame that wrote the segment, `older` the frame
+// `fresh` holds the rows written in the latest frame that wrote the column, `older` the frame
 // before. A reader that is further behind is told "all rows of a changed segment": changes are
 // never missed, at worst reported for a row that a reader of that age has seen already.
+// Frames begin for a column, not for each segment: where rows are written here and there, every
+// other write is its segment's first, which no processor foretells.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,53 +33,39 @@ struct ChangedBits {
 
 class RowChanges {
 public:
-    explicit RowChanges(uint32_t segmentRows) : m_words((segmentRows + 63) / 64) {}
+    explicit RowChanges(uint32_t segmentShift)
+        : m_shift(std::min(segmentShift, 6u)), m_mask((1u << m_shift) - 1)
+    {}
 
-    void resize(uint32_t segmentCount);
+    void resize(uint32_t rows); // whole segments
 
-    // To call before the first write of a frame to a segment, whose last write was at `version`.
-    void startFrame(uint32_t segment, uint64_t version)
+    // To call before the first write of a frame; the last one was at `version`.
+    void startFrame(uint64_t version);
+
+    void mark(uint32_t row) { m_fresh[row >> m_shift] |= uint64_t{1} << (row & m_mask); }
+    void mark(uint32_t row, uint32_t count);
+
+    // Of the segment that begins at row `first`.
+    [[nodiscard]] ChangedBits changed(uint32_t first, uint64_t since) const
     {
-        uint64_t* const bits = fresh(segment);
-        for (uint32_t i = 0; i < m_words; ++i) { // few: library calls take longer
-            bits[m_words + i] = bits[i];
-            bits[i] = 0;
-        }
-        m_from[segment] = {version, m_from[segment].fresh};
-    }
-
-    // Rows count from the segment's start.
-    void mark(uint32_t segment, uint32_t row)
-    {
-        fresh(segment)[row / 64] |= uint64_t{1} << (row % 64);
-    }
-    void mark(uint32_t segment, uint32_t row, uint32_t count);
-
-    [[nodiscard]] ChangedBits changed(uint32_t segment, uint64_t since) const
-    {
-        if (since < m_from[segment].older)
+        if (since < m_olderFrom)
             return {~uint64_t{0}};
-        const uint64_t* const bits = m_bits.data() + size_t{segment} * 2 * m_words;
-        return {0, bits, since < m_from[segment].fresh ? bits + m_words : nullptr};
+        const uint32_t word = first >> m_shift;
+        return {0, m_fresh.data() + word, since < m_freshFrom ? m_older.data() + word : nullptr};
     }
 
     [[nodiscard]] size_t bytes() const
     {
-        return m_bits.capacity() * sizeof(uint64_t) + m_from.capacity() * sizeof(From);
+        return (m_fresh.capacity() + m_older.capacity()) * sizeof(uint64_t);
     }
 
 private:
-    struct From { // bits cover changes after this
-        uint64_t fresh = 0, older = 0;
-    };
-    [[nodiscard]] uint64_t* fresh(uint32_t segment)
-    {
-        return m_bits.data() + size_t{segment} * 2 * m_words;
-    }
-
-    uint32_t m_words; // per segment: segments share no word, so threads may mark in parallel
-    std::vector<uint64_t> m_bits; // [segment][fresh, older][word]
-    std::vector<From> m_from;     // [segment]
+    // Segments share no word, so that threads may mark in different ones: those of less than 64
+    // rows fill theirs in part.
+    std::vector<uint64_t> m_fresh, m_older; // [row >> m_shift]
+    uint32_t m_shift;
+    uint32_t m_mask;
+    uint64_t m_freshFrom = 0, m_olderFrom = 0; // bits cover changes after this
 };
 
 } // namespace penumbra::ecs
