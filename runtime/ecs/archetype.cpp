@@ -13,8 +13,9 @@ namespace {
 
 // Columns of 2^n rows would all start at one cache set, so they lie apart. Not by little: a load
 // whose address equals that of a store under way in its low 12 bits waits for it (4 KiB aliasing),
-// and the processor works up to 30 vectors ahead. Eight lines keep the next column out of reach.
-constexpr uint32_t kColumnGap = 8 * kMaxAlignment;
+// and the processor works up to 30 vectors ahead, eight lines. Nor by a power of two of lines:
+// where blocks are not full, columns would leave cache sets unused, all of them the same ones.
+constexpr uint32_t kColumnGap = 11 * kMaxAlignment;
 
 // log2 of the rows of rowBytes that fit in `bytes`, at least four, at most as many as 4-byte rows.
 uint32_t rowShift(uint32_t bytes, uint32_t rowBytes)
@@ -63,6 +64,7 @@ Archetype::Archetype(uint32_t index, const ComponentMask& mask) : m_mask(mask), 
     }
     m_columnCount = static_cast<uint16_t>(m_columns.size());
     m_columnVersions.resize(m_columns.size());
+    m_allVersions.resize(m_columns.size());
     m_rowChanges.reserve(order.size()); // they stay where they are
     for (const ComponentId id : order)
         if (componentInfo(id).rowChanges)
@@ -153,10 +155,12 @@ void Archetype::reserve(uint32_t rows)
             changes.resize(segments << m_segmentShift);
         m_versions.resize(size_t{segments} * m_columns.size());
     }
-    reserveSparingly(m_entities, rows);
-    m_capacity = static_cast<uint32_t>(
-        std::min({m_blocks.size() << m_blockShift, size_t{segments} << m_segmentShift,
-                  m_entities.capacity()}));
+    if (m_entities.size() < rows) {
+        reserveSparingly(m_entities, rows);
+        m_entities.resize(m_entities.capacity());
+    }
+    m_capacity = static_cast<uint32_t>(std::min(
+        {m_blocks.size() << m_blockShift, size_t{segments} << m_segmentShift, m_entities.size()}));
 }
 
 uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
@@ -164,7 +168,8 @@ uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
     const uint32_t row = count();
     const auto added = static_cast<uint32_t>(entities.size());
     reserve(row + added);
-    m_entities.insert(m_entities.end(), entities.begin(), entities.end());
+    std::copy(entities.begin(), entities.end(), m_entities.begin() + row);
+    m_shape += added;
     markStructural(row, added, stamp);
     return row;
 }
@@ -232,7 +237,7 @@ Entity Archetype::closeGap(uint32_t row, Stamp stamp)
         m_disabled.removeRow(row, last, m_segmentShift);
         setLayout();
     }
-    m_entities.pop_back();
+    --m_shape;
     return moved;
 }
 
@@ -284,9 +289,10 @@ void Archetype::trim()
     m_blocks.shrink_to_fit();
     m_columnsAt.resize(m_blocks.size() * m_columns.size());
     m_columnsAt.shrink_to_fit();
+    m_entities.resize(count());
     m_entities.shrink_to_fit();
     m_capacity = static_cast<uint32_t>(
-        std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.capacity()}));
+        std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.size()}));
     setLayout();
 }
 
@@ -297,7 +303,8 @@ size_t Archetype::bookBytes() const
         m_versions.capacity() * sizeof(uint64_t) + m_columns.capacity() * sizeof(Column) +
         (m_blocks.capacity() + m_columnsAt.capacity()) * sizeof(std::byte*) +
         pages.capacity() * sizeof(uint32_t) + m_columnVersions.capacity() * sizeof(ColumnVersions) +
-        m_disabled.bytes() + (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
+        m_allVersions.capacity() * sizeof(uint64_t) + m_disabled.bytes() +
+        (withSet.capacity() + withoutSet.capacity()) * sizeof(Archetype*);
     for (const RowChanges& changes : m_rowChanges)
         bytes += changes.bytes();
     return bytes;

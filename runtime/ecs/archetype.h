@@ -35,8 +35,8 @@ public:
 
     [[nodiscard]] uint32_t index() const { return m_index; }
     [[nodiscard]] const ComponentMask& mask() const { return m_mask; }
-    [[nodiscard]] std::span<const Entity> entities() const { return m_entities; }
-    [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(m_entities.size()); }
+    [[nodiscard]] std::span<const Entity> entities() const { return {m_entities.data(), count()}; }
+    [[nodiscard]] uint32_t count() const { return static_cast<uint32_t>(m_shape); }
     [[nodiscard]] uint32_t segmentShift() const { return m_segmentShift; }
     [[nodiscard]] uint32_t segmentRows() const { return 1u << m_segmentShift; }
     [[nodiscard]] uint32_t blockRows() const { return m_blockMask + 1; }
@@ -58,9 +58,10 @@ public:
         return m_columnsAt.data() + size_t{row >> m_blockShift} * m_columnCount;
     }
     [[nodiscard]] uint32_t columnCount() const { return m_columnCount; }
-    // 0 unless all rows lie in one block and none is disabled; then a number that is another one
-    // whenever columnsAt(0) is.
-    [[nodiscard]] uint32_t layout() const { return m_layout; }
+    // layout() in the upper, count() in the lower half. The layout is 0 unless all rows lie in one
+    // block and none is disabled; then a number that is another one whenever columnsAt(0) is.
+    [[nodiscard]] uint64_t shape() const { return m_shape; }
+    [[nodiscard]] uint32_t layout() const { return static_cast<uint32_t>(m_shape >> 32); }
     [[nodiscard]] size_t rowInBlock(uint32_t row) const { return row & m_blockMask; }
 
     // Structure. reserve() makes room for that many rows in all; it alone allocates, and where it
@@ -81,9 +82,8 @@ public:
     // The same where count() lies in `window`, and its version is that of now.
     void push(Entity entity)
     {
-        if (m_entities.size() == m_entities.capacity())
-            __builtin_unreachable(); // or the compiler puts growth into every caller
-        m_entities.push_back(entity);
+        m_entities[count()] = entity;
+        ++m_shape;
     }
     Entity removeRow(uint32_t row, Stamp stamp)
     {
@@ -146,26 +146,26 @@ public:
         return true;
     }
     void markRows(uint32_t column, uint32_t row, uint32_t count, const Stamp& stamp);
-    // All rows. Without bits per row, two stores, however many segments there are.
+    // All rows. Without bits per row, one store, however many segments there are: to allVersion().
     template <bool kRowChanges>
     void markAll(uint32_t column, Stamp stamp)
     {
         if constexpr (kRowChanges)
             return markRows(column, 0, count(), stamp);
-        m_columnVersions[column].all = stamp.version;
-        __atomic_store_n(&m_columnVersions[column].newest, stamp.version, __ATOMIC_RELAXED);
+        m_allVersions[column] = stamp.version;
     }
     [[nodiscard]] uint64_t version(uint32_t column, uint32_t segment) const
     {
         const uint64_t own = m_versions[size_t{segment} * m_columnCount + column];
-        const uint64_t all = m_columnVersions[column].all;
-        return own > all ? own : all;
+        return std::max(own, m_allVersions[column]);
     }
     // The newest of all segments.
     [[nodiscard]] uint64_t version(uint32_t column) const
     {
-        return newest(m_columnVersions[column]);
+        return std::max(newest(m_columnVersions[column]), m_allVersions[column]);
     }
+    // When all rows were last marked at once. Stays where it is.
+    [[nodiscard]] uint64_t& allVersion(uint32_t column) { return m_allVersions[column]; }
     // Rows of a segment that may have changed after `since`: see RowChanges. All of a changed one
     // for a component that did not opt in.
     [[nodiscard]] ChangedBits changedRows(uint32_t column, uint32_t segment, uint64_t since) const
@@ -200,7 +200,11 @@ private:
     void setBlockShift(uint32_t shift);
     void addBlock();
     void setColumnsAt(size_t block);
-    void setLayout() { m_layout = m_blocks.size() == 1 && m_disabled.count() == 0 ? m_layouts : 0; }
+    void setLayout()
+    {
+        const uint32_t layout = m_blocks.size() == 1 && m_disabled.count() == 0 ? m_layouts : 0;
+        m_shape = uint64_t{layout} << 32 | count();
+    }
     void growFirstBlock();
     void destroyRow(uint32_t row);
     void markStructural(uint32_t row, uint32_t count, Stamp stamp);
@@ -215,8 +219,7 @@ private:
             changes.mark(row);
     }
     struct ColumnVersions {
-        uint64_t newest = 0;        // of all segments; read and written atomically
-        uint64_t all = 0;           // when all rows were last marked at once; 0 with row changes
+        uint64_t newest = 0;        // of segments marked one by one; read and written atomically
         RowChanges* rows = nullptr; // on the first lane of a component that has bits per row
     };
     [[nodiscard]] static uint64_t newest(const ColumnVersions& versions)
@@ -239,16 +242,17 @@ private:
     }
 
     // Walks touch the first two cache lines alone.
-    std::vector<Entity> m_entities;      // [count]
+    std::vector<Entity> m_entities;      // [row], as many as there is room for
     std::vector<std::byte*> m_columnsAt; // [block][column]
-    uint16_t m_columnCount = 0;
+    uint64_t m_shape = 0;
     uint32_t m_blockShift = 0; // log2 of the rows in a block, as of now
     uint32_t m_blockMask = 0;  // blockRows() - 1
     uint32_t m_segmentShift = 0;
     uint32_t m_segmentMask = 0; // segmentRows() - 1
-    uint32_t m_layout = 0;
+    uint16_t m_columnCount = 0;
     uint32_t m_capacity = 0;                      // rows that have room in everything
     std::vector<ColumnVersions> m_columnVersions; // [column]
+    std::vector<uint64_t> m_allVersions;          // [column]; 0 with row changes
     DisabledRows m_disabled;
     std::vector<uint64_t> m_versions;     // [segment][column], of the last write; first lanes only
     std::vector<RowChanges> m_rowChanges; // of the columns that have them

@@ -111,6 +111,10 @@ public:
 
 private:
     using Match = QueryCache::Match;
+    using Word = QueryCache::Word;
+    static constexpr size_t kWalkWords = QueryCache::wordCount(kDataCount, Flat::kCount);
+    template <size_t p> // where a column begins; its term's allVersion() lies before the first
+    static constexpr size_t kLaneWord = QueryCache::kHeadWords + Flat::kPlaces[p].argument + 1 + p;
     struct Run { // rows to visit, within one segment
         const Match* match;
         uint32_t segment;
@@ -165,8 +169,11 @@ private:
     template <class F, size_t... p>
     static void callRun(F& f, const Match& match, uint32_t row, uint32_t count,
                         std::index_sequence<p...>);
-    template <class F, size_t... p>
-    void callFirst(F& f, const Match& match, std::index_sequence<p...>) const; // a resolved one
+    template <class F, size_t... k, size_t... p>
+    void callFirst(F& f, Archetype& archetype, size_t count, const Word* walk,
+                   std::index_sequence<k...>, std::index_sequence<p...>) const; // a resolved one
+    template <size_t k>
+    void markTerm(Archetype& archetype, const Word* walk) const; // all rows, of a resolved one
     template <class F>
     void callAll(F& f, const Match& match) const; // all rows of any match, marked
     template <class F>

@@ -48,8 +48,10 @@ const QueryTerms& queryTerms(uint32_t slot)
 
 QueryCache::QueryCache(const QueryTerms& terms) : m_terms(terms)
 {
+    size_t lanes = 0;
     for (const ComponentId id : terms.data)
-        m_laneCount += componentInfo(id).laneCount;
+        lanes += componentInfo(id).laneCount;
+    m_walkWords = wordCount(terms.data.size(), lanes);
 }
 
 void QueryCache::extend(std::span<Archetype* const> archetypes)
@@ -59,42 +61,46 @@ void QueryCache::extend(std::span<Archetype* const> archetypes)
         if (!archetype->mask().containsAll(m_terms.with) ||
             archetype->mask().intersects(m_terms.without))
             continue;
-        Match match{archetype, nullptr, kNone, {}};
+        Match match{archetype, {}};
         size_t term = 0;
         for (const ComponentId id : m_terms.data)
             match.columns[term++] = static_cast<int16_t>(archetype->columnOf(id));
         for (const ComponentId id : m_terms.changed)
             match.columns[term++] = static_cast<int16_t>(archetype->columnOf(id));
-        addMatch(match);
+        reserveSparingly(m_matches,
+                         m_matches.size() + 1); // as many walks as matches, whatever throws
+        m_walks.resize((m_matches.size() + 1) * m_walkWords);
+        Word* const walk = &m_walks[m_matches.size() * m_walkWords];
+        walk[kArchetype] = reinterpret_cast<Word>(archetype);
+        walk[kShape] = ~Word{0}; // no archetype's
+        m_matches.push_back(match);
         __atomic_store_n(&m_seen, seen + 1, __ATOMIC_RELEASE); // if the next one throws
     }
     __atomic_store_n(&m_seen, archetypes.size(), __ATOMIC_RELEASE);
 }
 
-void QueryCache::addMatch(const Match& match)
-{
-    m_firstColumns.resize((m_matches.size() + 1) * m_laneCount); // may move
-    for (size_t i = 0; i < m_matches.size(); ++i)
-        m_matches[i].firstColumns = m_firstColumns.data() + i * m_laneCount;
-    m_matches.push_back(match);
-    m_matches.back().firstColumns = m_firstColumns.data() + (m_matches.size() - 1) * m_laneCount;
-}
-
 // Threads that do this at once write the same.
 void QueryCache::resolve(const Match& match) const
 {
-    const uint32_t layout = match.archetype->layout();
-    if (layout == 0)
+    Archetype& archetype = *match.archetype;
+    if (archetype.layout() == 0)
         return;
-    std::byte* const* const columnsAt = match.archetype->columnsAt(0);
-    std::byte** to = match.firstColumns;
+    Word* const walk =
+        m_walks.data() + static_cast<size_t>(&match - m_matches.data()) * m_walkWords;
+    if (load(walk + kShape) >> 32 == archetype.layout()) // rows came or went, and nothing moved
+        return __atomic_store_n(walk + kShape, archetype.shape(), __ATOMIC_RELEASE);
+    Word* to = walk + kHeadWords;
+    const auto put = [&](const void* pointer) {
+        __atomic_store_n(to++, reinterpret_cast<Word>(pointer), __ATOMIC_RELAXED);
+    };
+    std::byte* const* const columnsAt = archetype.columnsAt(0);
     for (size_t term = 0; term < m_terms.data.size(); ++term) {
         const int16_t column = match.columns[term];
+        put(column < 0 ? nullptr : &archetype.allVersion(static_cast<uint32_t>(column)));
         for (uint32_t lane = 0; lane < componentInfo(m_terms.data[term]).laneCount; ++lane)
-            __atomic_store_n(to++, column < 0 ? nullptr : columnsAt[column + lane],
-                             __ATOMIC_RELAXED);
+            put(column < 0 ? nullptr : columnsAt[static_cast<uint32_t>(column) + lane]);
     }
-    __atomic_store_n(&match.layout, layout, __ATOMIC_RELEASE);
+    __atomic_store_n(walk + kShape, archetype.shape(), __ATOMIC_RELEASE);
 }
 
 uint32_t QueryCache::rowCount() const

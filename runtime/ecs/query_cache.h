@@ -26,12 +26,28 @@ class QueryCache {
 public:
     struct Match {
         Archetype* archetype;
-        // Where the columns of the data terms begin, lanes one by one, null if absent: as long as
-        // the archetype's layout() is `layout`, which is never 0. Read and written atomically.
-        std::byte** firstColumns;
-        mutable uint32_t layout;
         std::array<int16_t, kMaxQueryTerms> columns; // data, then changed; -1: absent
     };
+
+    // All that a walk over a match needs while the archetype keeps its shape(): words side by side,
+    // few cache lines, no pointers to follow. Read and written atomically.
+    //   archetype | its shape() | for each data term: its allVersion(), where its columns begin,
+    //   lane by lane; null if absent
+    using Word = uint64_t;
+    enum WalkWord : size_t { kArchetype, kShape, kHeadWords };
+    static constexpr size_t wordCount(size_t terms, size_t lanes)
+    {
+        return kHeadWords + terms + lanes;
+    }
+    template <class T = Word>
+    [[nodiscard]] static T load(const Word* word)
+    {
+        const Word value = __atomic_load_n(word, __ATOMIC_ACQUIRE);
+        if constexpr (std::is_pointer_v<T>)
+            return reinterpret_cast<T>(value);
+        else
+            return value;
+    }
 
     explicit QueryCache(const QueryTerms& terms);
 
@@ -47,26 +63,20 @@ public:
     [[nodiscard]] uint32_t rowCount() const;
     [[nodiscard]] size_t bytes() const
     {
-        return m_matches.capacity() * sizeof(Match) +
-               m_firstColumns.capacity() * sizeof(std::byte*);
+        return m_matches.capacity() * sizeof(Match) + m_walks.capacity() * sizeof(Word);
     }
 
-    // True if `firstColumns` hold; the archetype then has one block and no disabled rows.
-    [[nodiscard]] static bool isResolved(const Match& match)
-    {
-        return __atomic_load_n(&match.layout, __ATOMIC_ACQUIRE) == match.archetype->layout();
-    }
-    // So that they do from now on, if they can. Thread-safe.
+    // Of matches()[0 …], side by side, wordCount() each.
+    [[nodiscard]] std::span<const Word> walks() const { return m_walks; }
+    // So that it does from now on, if it can. Thread-safe.
     void resolve(const Match& match) const;
 
 private:
-    void addMatch(const Match& match);
-
+    mutable std::vector<Word> m_walks;
+    size_t m_seen = 0;
     const QueryTerms& m_terms;
     std::vector<Match> m_matches;
-    uint32_t m_laneCount = 0;               // of all data terms
-    std::vector<std::byte*> m_firstColumns; // [match][lane]
-    size_t m_seen = 0;
+    size_t m_walkWords = 0; // of one match
 };
 
 } // namespace penumbra::ecs

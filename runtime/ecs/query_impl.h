@@ -120,6 +120,25 @@ void Query<Terms...>::markAll(const Match& match) const
 }
 
 template <class... Terms>
+template <size_t k>
+[[gnu::always_inline]] inline void Query<Terms...>::markTerm(Archetype& archetype,
+                                                             const Word* walk) const
+{
+    using Term = Argument<k>;
+    if constexpr (!std::is_const_v<typename Term::Access>) {
+        auto* const all = QueryCache::load<uint64_t*>(walk + kLaneWord<Flat::first(k)> - 1);
+        if (Term::Traits::kOptional && all == nullptr)
+            return;
+        if constexpr (ComponentTraits<typename Term::T>::kRowChanges)
+            archetype.markRows(
+                static_cast<uint32_t>(archetype.columnOf(componentId<typename Term::T>())), 0,
+                archetype.count(), m_stamp);
+        else
+            *all = m_stamp.version;
+    }
+}
+
+template <class... Terms>
 template <size_t p>
 [[gnu::always_inline]] inline auto Query<Terms...>::pointer(const Match& match,
                                                             std::byte* const* columnsAt, size_t row)
@@ -181,21 +200,19 @@ template <class F, size_t... p>
 }
 
 template <class... Terms>
-template <class F, size_t... p>
-[[gnu::always_inline]] inline void Query<Terms...>::callFirst(F& f, const Match& match,
-                                                              std::index_sequence<p...>) const
+template <class F, size_t... k, size_t... p>
+[[gnu::always_inline]] inline void
+Query<Terms...>::callFirst(F& f, Archetype& archetype, size_t count, const Word* walk,
+                           std::index_sequence<k...>, std::index_sequence<p...>) const
 {
     // All loads before the marks, which the compiler must take for writes to any of this.
-    const Archetype& archetype = *match.archetype;
     const Entity* const entities = archetype.entities().data();
-    const size_t count = archetype.count();
-    [[maybe_unused]] std::byte* const* const columns = match.firstColumns;
     const auto call = [&](auto*... elements) {
-        markAll(match);
+        (markTerm<k>(archetype, walk), ...);
         callRows(f, entities, count, elements...);
     };
-    call(reinterpret_cast<typename Argument<Flat::kPlaces[p].argument>::Element*>(
-        __atomic_load_n(columns + p, __ATOMIC_RELAXED))...);
+    call(QueryCache::load<typename Argument<Flat::kPlaces[p].argument>::Element*>(walk +
+                                                                                  kLaneWord<p>)...);
 }
 
 // Whole blocks, not segments: columns run on through a block, and longer loops cost less. Its own
@@ -210,9 +227,9 @@ template <class F>
             forRunsOf<false>(match, s, [&](const Run& run) { callMarked(f, run); });
         return;
     }
+    m_cache->resolve(match);
     if (archetype.count() == 0)
         return;
-    m_cache->resolve(match);
     markAll(match);
     for (uint32_t row = 0; row < archetype.count(); row += archetype.blockRows()) {
         callRun(f, match, row, std::min(archetype.blockRows(), archetype.count() - row),

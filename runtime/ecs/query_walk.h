@@ -93,11 +93,18 @@ void Query<Terms...>::each(F&& f) const
     // Few instructions up to the rows: where archetypes are small, and each loop's end hard to
     // guess, they are what a walk costs.
     const IterationGuard guard(*m_iterating);
-    for (const Match& match : m_cache->matches()) {
-        if (QueryCache::isResolved(match)) [[likely]]
-            callFirst(f, match, FlatIndices());
+    const std::span<const Word> walks = m_cache->walks();
+    const Word* const end = walks.data() + walks.size();
+    for (const Word* walk = walks.data(); walk != end; walk += kWalkWords) {
+        Archetype& archetype = *QueryCache::load<Archetype*>(walk + QueryCache::kArchetype);
+        const Word shape = QueryCache::load(walk + QueryCache::kShape);
+        if (shape == archetype.shape()) [[likely]]
+            callFirst(f, archetype, static_cast<uint32_t>(shape), walk, DataIndices(),
+                      FlatIndices());
         else // on a copy: then this one need not be in memory
-            Query(*m_cache, m_stamp, m_since, *m_iterating).callAll(f, match);
+            Query(*m_cache, m_stamp, m_since, *m_iterating)
+                .callAll(f,
+                         m_cache->matches()[static_cast<size_t>(walk - walks.data()) / kWalkWords]);
     }
 }
 

@@ -332,10 +332,10 @@ void World::remove(Entity entity)
 
 inline const QueryCache& World::cacheOf(uint32_t querySlot) const
 {
-    if (QueryCache* const* const page =
-            __atomic_load_n(&m_queryPages[querySlot / kQueriesPerPage], __ATOMIC_ACQUIRE))
+    if (QueryCache* const* const page = __atomic_load_n(&m_queryPages[querySlot / kQueriesPerPage],
+                                                        __ATOMIC_ACQUIRE)) [[likely]]
         if (const QueryCache* cache =
-                __atomic_load_n(&page[querySlot % kQueriesPerPage], __ATOMIC_ACQUIRE))
+                __atomic_load_n(&page[querySlot % kQueriesPerPage], __ATOMIC_ACQUIRE)) [[likely]]
             if (cache->isCurrent(m_archetypes.size())) [[likely]]
                 return *cache;
     return findCache(querySlot);

@@ -66,7 +66,7 @@ class WorldPrinter:
 
     def children(self):
         for archetype in self.archetypes():
-            rows = vector_size(archetype["m_entities"])
+            rows = int(archetype["m_shape"]) & 0xFFFFFFFF
             if rows > 0:
                 names = ", ".join(mask_names(archetype["m_mask"])) or "-"
                 yield f"archetype {int(archetype['m_index'])}", f"{rows} rows of {names}"

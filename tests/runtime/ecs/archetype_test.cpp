@@ -137,6 +137,7 @@ TEST(Archetype, LayoutTellsWhetherColumnsMoved)
         first = archetype.columnsAt(0)[0];
         ASSERT_EQ(archetype.layout() == 0, i >= archetype.blockRows()) << i; // several blocks
         ASSERT_TRUE(!moved || archetype.layout() != layout) << i;
+        ASSERT_EQ(archetype.shape(), uint64_t{archetype.layout()} << 32 | (i + 1)) << i;
         blocks += moved;
         layout = archetype.layout();
     }
@@ -150,6 +151,7 @@ TEST(Archetype, LayoutTellsWhetherColumnsMoved)
     EXPECT_EQ(archetype.layout(), 0u);
     archetype.removeRow(3, {1, 0});
     EXPECT_EQ(archetype.layout(), layout);
+    EXPECT_EQ(archetype.shape(), uint64_t{layout} << 32 | 9);
     while (archetype.count() > 0)
         archetype.removeRow(0, {1, 0});
     archetype.trim();

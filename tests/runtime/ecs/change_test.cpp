@@ -117,6 +117,47 @@ TEST_F(Change, LateReadersMissNothing)
         EXPECT_NE(std::find(found.begin(), found.end(), entity), found.end());
 }
 
+// Two frames that wrote are told apart row by row, wherever in the archetype they wrote; of the
+// frames before, the segments.
+TEST_F(Change, ReadersTwoFramesBehindGetRowsThenSegments)
+{
+    const uint64_t before = seen;
+    const std::vector<Entity> written{entities[10], entities[kCount / 2], entities[kCount - 10]};
+    for (const Entity entity : written) {
+        world.get<Health>(entity).points = 1;
+        look();
+        look(); // frames that write nothing count for nothing
+        seen = before;
+        const std::vector<Entity> found = changed<Health>();
+        if (entity != written.back()) {
+            EXPECT_EQ(found,
+                      std::vector(written.begin(), written.begin() + 1 + (entity != written[0])));
+            continue;
+        }
+        for (const Entity expected : written)
+            EXPECT_NE(std::find(found.begin(), found.end(), expected), found.end());
+        EXPECT_LT(found.size(), kCount / 4); // three segments
+    }
+}
+
+// Segments of one column are marked by several threads at once, each the first of its frame.
+TEST_F(Change, ParallelWritesMarkOnlyTheRowsVisited)
+{
+    for (uint32_t frame = 0; frame < 8; ++frame) {
+        std::vector<Entity> written;
+        for (uint32_t i = frame; i < kCount; i += 61) {
+            world.get<Health>(entities[i]).points = 1;
+            written.push_back(entities[i]);
+        }
+        const uint64_t before = seen;
+        look();
+        world.query<Health, Changed<Health>>().since(before).parallelEach(
+            [](Health& h) { h.points += 1; });
+        ASSERT_EQ(changed<Health>(), written) << frame;
+        look();
+    }
+}
+
 TEST_F(Change, FilteredWritesMarkOnlyTheRowsVisited)
 {
     world.get<Health>(entities[5]).points = 1;
