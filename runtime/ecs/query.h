@@ -63,7 +63,7 @@ public:
     {}
 
     // The terms, for the cache.
-    static uint32_t slot();
+    static uint32_t knownSlot(); // 0 before findSlot()
     static uint32_t findSlot();
 
     // Changed<> passes what was written after this version (World::version() at the last look).

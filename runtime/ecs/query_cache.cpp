@@ -31,7 +31,7 @@ uint32_t registerQuery(const QueryTerms& terms)
         return t.with == terms.with && t.without == terms.without && t.data == terms.data &&
                t.changed == terms.changed;
     });
-    const auto slot = static_cast<uint32_t>(found - all.terms.begin());
+    const auto slot = static_cast<uint32_t>(found - all.terms.begin()) + 1;
     if (found == all.terms.end()) {
         PENUMBRA_ASSERT(slot < kMaxQueries, "more than {} kinds of query", kMaxQueries);
         all.terms.push_back(terms);
@@ -43,7 +43,7 @@ const QueryTerms& queryTerms(uint32_t slot)
 {
     QueryRegistry& all = registry();
     const std::lock_guard lock(all.mutex);
-    return all.terms[slot];
+    return all.terms[slot - 1];
 }
 
 QueryCache::QueryCache(const QueryTerms& terms) : m_terms(terms)
@@ -56,8 +56,8 @@ QueryCache::QueryCache(const QueryTerms& terms) : m_terms(terms)
 
 void QueryCache::extend(std::span<Archetype* const> archetypes)
 {
-    for (size_t seen = m_seen; seen < archetypes.size(); ++seen) {
-        Archetype* archetype = archetypes[seen];
+    for (; m_seen < archetypes.size(); ++m_seen) { // goes on where the one before threw
+        Archetype* archetype = archetypes[m_seen];
         if (!archetype->mask().containsAll(m_terms.with) ||
             archetype->mask().intersects(m_terms.without))
             continue;
@@ -74,9 +74,7 @@ void QueryCache::extend(std::span<Archetype* const> archetypes)
         walk[kArchetype] = reinterpret_cast<Word>(archetype);
         walk[kShape] = ~Word{0}; // no archetype's
         m_matches.push_back(match);
-        __atomic_store_n(&m_seen, seen + 1, __ATOMIC_RELEASE); // if the next one throws
     }
-    __atomic_store_n(&m_seen, archetypes.size(), __ATOMIC_RELEASE);
 }
 
 // Threads that do this at once write the same.

@@ -16,9 +16,9 @@ struct QueryTerms {
         changed; // a row passes if any of them changed; empty: every row passes
 };
 
-inline constexpr uint32_t kMaxQueries = 4096; // in a program
+inline constexpr uint32_t kMaxQueries = 4096; // in a program, slot 0 for none
 
-// Thread-safe. The slot is dense, below kMaxQueries: worlds keep their caches in an array.
+// Thread-safe. Slots are dense, from 1 on, below kMaxQueries: worlds keep their caches in an array.
 [[nodiscard]] uint32_t registerQuery(const QueryTerms& terms);
 [[nodiscard]] const QueryTerms& queryTerms(uint32_t slot);
 
@@ -53,12 +53,6 @@ public:
 
     // Looks at the archetypes that appeared since the last call.
     void extend(std::span<Archetype* const> archetypes);
-    // Thread-safe: true if extend() has nothing to add.
-    [[nodiscard]] bool isCurrent(size_t archetypeCount) const
-    {
-        return __atomic_load_n(&m_seen, __ATOMIC_ACQUIRE) == archetypeCount;
-    }
-
     [[nodiscard]] std::span<const Match> matches() const { return m_matches; }
     [[nodiscard]] uint32_t rowCount() const;
     [[nodiscard]] size_t bytes() const
@@ -78,5 +72,13 @@ private:
     std::vector<Match> m_matches;
     size_t m_walkWords = 0; // of one match
 };
+
+// Where a world's queries find their caches, by slot, without a lock.
+struct QueryPage {
+    static constexpr uint32_t kSlots = 64;
+    // Null: not asked for yet, or not since an archetype was made. Read and written atomically.
+    std::array<const QueryCache*, kSlots> current{};
+};
+inline constexpr QueryPage kNoQueries; // until the first of a page is asked for
 
 } // namespace penumbra::ecs

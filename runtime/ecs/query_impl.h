@@ -28,18 +28,19 @@ private:
 };
 
 template <class... Terms>
-inline constinit uint32_t kKnownQuery = 0; // Query::slot() once found, plus one: as kKnownId
+inline constinit uint32_t kKnownQuery = 0; // Query::slot() once found: as kKnownId
 
 template <class... Terms>
-uint32_t Query<Terms...>::slot()
+uint32_t Query<Terms...>::knownSlot()
 {
-    const uint32_t known = __atomic_load_n(&kKnownQuery<Terms...>, __ATOMIC_RELAXED);
-    return known != 0 ? known - 1 : findSlot();
+    return __atomic_load_n(&kKnownQuery<Terms...>, __ATOMIC_RELAXED);
 }
 
 template <class... Terms>
 [[gnu::noinline, gnu::cold]] uint32_t Query<Terms...>::findSlot()
 {
+    if (const uint32_t known = knownSlot())
+        return known;
     const uint32_t found = [] {
         QueryTerms terms;
         [[maybe_unused]] const auto add = [&]<class Term>() {
@@ -59,7 +60,7 @@ template <class... Terms>
         (add.template operator()<Terms>(), ...);
         return registerQuery(terms);
     }();
-    __atomic_store_n(&kKnownQuery<Terms...>, found + 1, __ATOMIC_RELAXED);
+    __atomic_store_n(&kKnownQuery<Terms...>, found, __ATOMIC_RELAXED);
     return found;
 }
 

@@ -42,7 +42,7 @@ public:
     [[nodiscard]] Query<Terms...> query() const
     {
         (check<Terms>(), ...);
-        const Query<Terms...> query(m_world.cacheOf(Query<Terms...>::slot()), m_stamp, m_lastRun,
+        const Query<Terms...> query(m_world.cacheOf<Query<Terms...>>(), m_stamp, m_lastRun,
                                     m_world.m_iterating);
         __atomic_fetch_add(&m_rows, uint64_t{query.count()}, __ATOMIC_RELAXED);
         return query;

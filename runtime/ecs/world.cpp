@@ -10,6 +10,7 @@ namespace penumbra::ecs {
 
 World::World() : m_index(new Index)
 {
+    m_queryPages.fill(&kNoQueries);
     static_cast<void>(archetypeOf(ComponentMask{}));
 #ifndef NDEBUG
     rememberDestroyed(true);
@@ -20,7 +21,6 @@ World::~World()
 {
     for (const Archetype* archetype : m_archetypes)
         delete archetype;
-    dropQueries();
     delete m_index;
     delete m_observers;
     delete m_destroyed;
@@ -28,11 +28,9 @@ World::~World()
 
 void World::dropQueries()
 {
-    for (QueryCache**& page : m_queryPages) {
-        for (uint32_t i = 0; page != nullptr && i < kQueriesPerPage; ++i)
-            delete page[i];
-        delete[] std::exchange(page, nullptr);
-    }
+    m_queryPages.fill(&kNoQueries);
+    m_index->queryPages = {};
+    m_index->queries.clear();
 }
 
 Archetype& World::archetypeOf(const ComponentMask& mask)
@@ -42,6 +40,9 @@ Archetype& World::archetypeOf(const ComponentMask& mask)
         m_archetypes.reserve(m_archetypes.size() + 1);
         archetype = new Archetype(static_cast<uint32_t>(m_archetypes.size()), mask);
         m_archetypes.push_back(archetype);
+        for (const std::unique_ptr<QueryPage>& page : m_index->queryPages)
+            if (page != nullptr)
+                page->current.fill(nullptr);
     }
     return *archetype;
 }
@@ -56,17 +57,17 @@ Archetype& World::findArchetype(const ComponentSet& set)
 const QueryCache& World::findCache(uint32_t querySlot) const
 {
     const std::lock_guard lock(m_index->queryMutex);
-    QueryCache**& page = m_queryPages[querySlot / kQueriesPerPage];
-    if (page == nullptr)
-        __atomic_store_n(
-            &page, new QueryCache* [kQueriesPerPage] {}, __ATOMIC_RELEASE);
-    QueryCache*& cache = page[querySlot % kQueriesPerPage];
-    if (cache == nullptr) {
-        auto made = std::make_unique<QueryCache>(queryTerms(querySlot));
-        made->extend(m_archetypes);
-        __atomic_store_n(&cache, made.release(), __ATOMIC_RELEASE);
-    }
+    if (querySlot >= m_index->queries.size())
+        m_index->queries.resize(querySlot + 1);
+    std::unique_ptr<QueryCache>& cache = m_index->queries[querySlot];
+    if (cache == nullptr)
+        cache = std::make_unique<QueryCache>(queryTerms(querySlot));
     cache->extend(m_archetypes);
+    std::unique_ptr<QueryPage>& page = m_index->queryPages[querySlot / QueryPage::kSlots];
+    if (page == nullptr)
+        page = std::make_unique<QueryPage>();
+    __atomic_store_n(&page->current[querySlot % QueryPage::kSlots], cache.get(), __ATOMIC_RELEASE);
+    __atomic_store_n(&m_queryPages[querySlot / QueryPage::kSlots], page.get(), __ATOMIC_RELEASE);
     return *cache;
 }
 

@@ -171,7 +171,8 @@ private:
         return findArchetype(set);
     }
     Archetype& findArchetype(const ComponentSet& set);
-    [[nodiscard]] const QueryCache& cacheOf(uint32_t querySlot) const;
+    template <class AnyQuery>
+    [[nodiscard]] const QueryCache& cacheOf() const;
     [[nodiscard]] const QueryCache& findCache(uint32_t querySlot) const;
     void dropQueries();
     // Room for `more` rows. After it, nothing throws that puts rows in.
@@ -267,7 +268,6 @@ private:
     [[nodiscard]] Entity singletonEntity() const;
 
     struct Index; // archetypes by their components, a lock: what needs heavy headers
-    static constexpr uint32_t kQueriesPerPage = 64;
 
     EntityTable m_entities;
     std::vector<Archetype*> m_archetypes; // owned, in the order they were made; 0 is empty
@@ -284,8 +284,8 @@ private:
     DestroyedLog* m_destroyed = nullptr;  // owned; null: not wanted
 
     mutable uint32_t m_iterating = 0; // debug builds; several threads count
-    // Queries by slot, in pages that never move: systems look theirs up without a lock. Owned.
-    mutable std::array<QueryCache**, kMaxQueries / kQueriesPerPage> m_queryPages{};
+    // By slot, in pages that never move: systems look their queries up without a lock.
+    mutable std::array<const QueryPage*, kMaxQueries / QueryPage::kSlots> m_queryPages;
 };
 
 } // namespace penumbra::ecs

@@ -330,22 +330,23 @@ void World::remove(Entity entity)
     removeSet(entity, componentSet<Ts...>());
 }
 
-inline const QueryCache& World::cacheOf(uint32_t querySlot) const
+template <class AnyQuery>
+const QueryCache& World::cacheOf() const
 {
-    if (QueryCache* const* const page = __atomic_load_n(&m_queryPages[querySlot / kQueriesPerPage],
-                                                        __ATOMIC_ACQUIRE)) [[likely]]
-        if (const QueryCache* cache =
-                __atomic_load_n(&page[querySlot % kQueriesPerPage], __ATOMIC_ACQUIRE)) [[likely]]
-            if (cache->isCurrent(m_archetypes.size())) [[likely]]
-                return *cache;
-    return findCache(querySlot);
+    const uint32_t slot = AnyQuery::knownSlot();
+    const QueryPage& page =
+        *__atomic_load_n(&m_queryPages[slot / QueryPage::kSlots], __ATOMIC_ACQUIRE);
+    if (const QueryCache* cache =
+            __atomic_load_n(&page.current[slot % QueryPage::kSlots], __ATOMIC_ACQUIRE)) [[likely]]
+        return *cache;
+    return findCache(AnyQuery::findSlot());
 }
 
 template <class... Terms>
 Query<Terms...> World::query()
 {
     assertOutsideSystems();
-    return {cacheOf(Query<Terms...>::slot()), m_stamp, 0, m_iterating};
+    return {cacheOf<Query<Terms...>>(), m_stamp, 0, m_iterating};
 }
 
 template <class... Terms>
@@ -353,7 +354,7 @@ requires(Query<Terms...>::kReadOnly) Query<Terms...> World::query()
 const
 {
     assertOutsideSystems();
-    return {cacheOf(Query<Terms...>::slot()), m_stamp, 0, m_iterating};
+    return {cacheOf<Query<Terms...>>(), m_stamp, 0, m_iterating};
 }
 
 } // namespace penumbra::ecs

@@ -3,6 +3,7 @@
 
 #include "runtime/ecs/world.h"
 
+#include <memory>
 #include <mutex>
 #include <unordered_map>
 
@@ -10,7 +11,9 @@ namespace penumbra::ecs {
 
 struct World::Index {
     std::unordered_map<ComponentMask, Archetype*, ComponentMask::Hash> byMask;
-    std::mutex queryMutex; // to make or extend a QueryCache
+    std::mutex queryMutex;                            // for what follows
+    std::vector<std::unique_ptr<QueryCache>> queries; // [slot]
+    std::array<std::unique_ptr<QueryPage>, kMaxQueries / QueryPage::kSlots> queryPages;
 };
 
 } // namespace penumbra::ecs

@@ -107,14 +107,10 @@ WorldStatistics World::statistics() const
     // A node of the map: key, value, link, hash; and its bucket.
     all.bookBytes += m_index->byMask.size() * (sizeof(ComponentMask) + 3 * sizeof(void*)) +
                      m_index->byMask.bucket_count() * sizeof(void*);
-    for (const QueryCache* const* page : m_queryPages) {
-        if (page == nullptr)
-            continue;
-        all.bookBytes += kQueriesPerPage * sizeof(void*);
-        for (uint32_t i = 0; i < kQueriesPerPage; ++i)
-            if (const QueryCache* cache = page[i])
-                all.bookBytes += sizeof(*cache) + cache->bytes();
-    }
+    for (const std::unique_ptr<QueryPage>& page : m_index->queryPages)
+        all.bookBytes += page != nullptr ? sizeof(QueryPage) : 0;
+    for (const std::unique_ptr<QueryCache>& cache : m_index->queries)
+        all.bookBytes += sizeof(cache) + (cache != nullptr ? sizeof(*cache) + cache->bytes() : 0);
     return all;
 }
 
