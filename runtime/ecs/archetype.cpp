@@ -176,6 +176,8 @@ uint32_t Archetype::append(std::span<const Entity> entities, Stamp stamp)
 
 void Archetype::markRows(uint32_t column, uint32_t row, uint32_t count, const Stamp& stamp)
 {
+    if (count == 0)
+        return;
     ColumnVersions& versions = startVersion(column, stamp);
     const uint32_t end = row + count;
     for (uint32_t at = row & ~m_segmentMask; at < end; at += segmentRows())
@@ -291,8 +293,13 @@ void Archetype::trim()
     m_columnsAt.shrink_to_fit();
     m_entities.resize(count());
     m_entities.shrink_to_fit();
-    m_capacity = static_cast<uint32_t>(
-        std::min({size_t{m_capacity}, m_blocks.size() << m_blockShift, m_entities.size()}));
+    const uint32_t segments = segmentCount();
+    m_versions.resize(size_t{segments} * m_columns.size());
+    m_versions.shrink_to_fit();
+    for (RowChanges& changes : m_rowChanges)
+        changes.trim(segments << m_segmentShift);
+    m_stampedSegment = kNone; // its versions may be gone
+    m_capacity = std::min(m_capacity, count());
     setLayout();
 }
 

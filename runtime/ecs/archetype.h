@@ -166,15 +166,12 @@ public:
     }
     // When all rows were last marked at once. Stays where it is.
     [[nodiscard]] uint64_t& allVersion(uint32_t column) { return m_allVersions[column]; }
-    // Rows of a segment that may have changed after `since`: see RowChanges. All of a changed one
-    // for a component that did not opt in.
-    [[nodiscard]] ChangedBits changedRows(uint32_t column, uint32_t segment, uint64_t since) const
+    // Rows that may have changed after `since`, in segments whose version is newer: see RowChanges.
+    // All of them for a component that did not opt in.
+    [[nodiscard]] ChangedRows changedRows(uint32_t column, uint64_t since) const
     {
-        if (version(column, segment) <= since)
-            return {};
         const RowChanges* const rows = m_columnVersions[column].rows;
-        return rows == nullptr ? ChangedBits{~uint64_t{0}}
-                               : rows->changed(segment << m_segmentShift, since);
+        return rows == nullptr ? ChangedRows{~uint64_t{0}} : rows->changed(since);
     }
 
     // Disabled rows (World::setEnabled). A row that is enabled again counts as changed: readers
@@ -252,8 +249,8 @@ private:
     uint16_t m_columnCount = 0;
     uint32_t m_capacity = 0;                      // rows that have room in everything
     std::vector<ColumnVersions> m_columnVersions; // [column]
-    std::vector<uint64_t> m_allVersions;          // [column]; 0 with row changes
     DisabledRows m_disabled;
+    std::vector<uint64_t> m_allVersions;  // [column]; 0 with row changes
     std::vector<uint64_t> m_versions;     // [segment][column], of the last write; first lanes only
     std::vector<RowChanges> m_rowChanges; // of the columns that have them
     uint32_t m_stampedSegment = kNone;    // markStructural's last

@@ -132,8 +132,8 @@ private:
     void forRunsOf(const Match& match, uint32_t segment, Visit&& visit) const;
     template <bool kWhole, class Visit>
     void forRuns(Visit&& visit) const;
-    template <bool kWhole, class Visit>
-    void forRunsParallel(Visit&& visit) const; // visit(Run, ordinal)
+    template <class Call>
+    static void forTasks(size_t count, Call&& call); // call(i) for each, in parallel or inline
     // Rows of `archetype` are to be skipped.
     [[nodiscard]] static bool skips(const Archetype& archetype)
     {
@@ -145,8 +145,10 @@ private:
     void markAll(const Match& match) const;
     void mark(const Match& match, uint32_t row, uint32_t count) const;
     // In the columns with, or in those without bits by row.
-    uint16_t* listChanged(const Match& match, uint32_t segment, uint32_t offset,
-                          uint16_t* end) const;
+    using Changes = std::array<ChangedRows, kChangedCount>;
+    [[nodiscard]] Changes changes(const Match& match) const; // before the walk's first mark
+    uint16_t* listChanged(const Match& match, const Changes& changes, uint32_t segment,
+                          uint32_t offset, uint16_t* end) const;
     template <bool kByRow>
     void markChanged(const Match& match, uint32_t row) const;
     template <class Mark>
@@ -179,7 +181,8 @@ private:
     template <class F>
     void callMarked(F& f, const Run& run) const; // marks, then callRun
     template <class F>
-    void callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const;
+    void callChanged(F& f, const Match& match, const Changes& changes, uint32_t segment,
+                     uint32_t last) const;
     template <class F>
     void callSegment(F& f, const Run& run, uint32_t ordinal) const;
 

@@ -33,7 +33,7 @@ uint32_t registerQuery(const QueryTerms& terms)
     });
     const auto slot = static_cast<uint32_t>(found - all.terms.begin()) + 1;
     if (found == all.terms.end()) {
-        PENUMBRA_ASSERT(slot < kMaxQueries, "more than {} kinds of query", kMaxQueries);
+        PENUMBRA_ASSERT(slot < kMaxQueries, "more than {} kinds of query", kMaxQueries - 1);
         all.terms.push_back(terms);
     }
     return slot;
@@ -67,8 +67,8 @@ void QueryCache::extend(std::span<Archetype* const> archetypes)
             match.columns[term++] = static_cast<int16_t>(archetype->columnOf(id));
         for (const ComponentId id : m_terms.changed)
             match.columns[term++] = static_cast<int16_t>(archetype->columnOf(id));
-        reserveSparingly(m_matches,
-                         m_matches.size() + 1); // as many walks as matches, whatever throws
+        // As many walks as matches, whatever throws.
+        reserveSparingly(m_matches, m_matches.size() + 1);
         m_walks.resize((m_matches.size() + 1) * m_walkWords);
         Word* const walk = &m_walks[m_matches.size() * m_walkWords];
         walk[kArchetype] = reinterpret_cast<Word>(archetype);

@@ -62,7 +62,7 @@ public:
 
     // Of matches()[0 …], side by side, wordCount() each.
     [[nodiscard]] std::span<const Word> walks() const { return m_walks; }
-    // So that it does from now on, if it can. Thread-safe.
+    // Brings the walk of a match up to date, if its archetype has a layout(). Thread-safe.
     void resolve(const Match& match) const;
 
 private:
@@ -76,7 +76,8 @@ private:
 // Where a world's queries find their caches, by slot, without a lock.
 struct QueryPage {
     static constexpr uint32_t kSlots = 64;
-    // Null: not asked for yet, or not since an archetype was made. Read and written atomically.
+    // Null: not asked for yet, or not since an archetype was made. Threads may fill it in at once;
+    // only structural changes, which are alone, empty it.
     std::array<const QueryCache*, kSlots> current{};
 };
 inline constexpr QueryPage kNoQueries; // until the first of a page is asked for

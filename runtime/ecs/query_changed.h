@@ -34,25 +34,36 @@ void Query<Terms...>::markChanged(const Match& match, uint32_t row) const
     });
 }
 
+template <class... Terms>
+auto Query<Terms...>::changes(const Match& match) const -> Changes
+{
+    Changes all;
+    for (size_t i = 0; i < kChangedCount; ++i)
+        all[i] = match.archetype->changedRows(match.columns[kDataCount + i], m_since);
+    return all;
+}
+
 // Appends the rows of a segment that pass, counted from its start and moved by `offset`, without a
 // branch per row: where few changed, here and there, wrong guesses would take longer than the work.
 // Writes up to two rows past the new end; returns it.
 template <class... Terms>
-uint16_t* Query<Terms...>::listChanged(const Match& match, uint32_t segment, uint32_t offset,
-                                       uint16_t* end) const
+uint16_t* Query<Terms...>::listChanged(const Match& match, const Changes& changes, uint32_t segment,
+                                       uint32_t offset, uint16_t* end) const
 {
     const Archetype& archetype = *match.archetype;
     const uint32_t first = segment << archetype.segmentShift();
     const uint32_t rows = std::min(archetype.segmentRows(), archetype.count() - first);
     const bool skipsSome = skips(archetype);
-    std::array<ChangedBits, kChangedCount> terms;
+    std::array<uint64_t, kChangedCount> passes; // all bits or none
     for (size_t i = 0; i < kChangedCount; ++i)
-        terms[i] = archetype.changedRows(match.columns[kDataCount + i], segment, m_since);
+        passes[i] = archetype.version(match.columns[kDataCount + i], segment) > m_since
+                        ? ~uint64_t{0}
+                        : uint64_t{0};
     for (uint32_t word = 0; word * 64 < rows; ++word) {
         const uint32_t left = rows - word * 64;
         uint64_t bits = 0;
-        for (const ChangedBits& term : terms)
-            bits |= term.word(word);
+        for (size_t i = 0; i < kChangedCount; ++i)
+            bits |= passes[i] & changes[i].word(first + word * 64);
         bits &= left < 64 ? ~(~uint64_t{0} << left) : ~uint64_t{0};
         if (skipsSome)
             bits &= ~archetype.disabled().word(first + word * 64);
@@ -77,7 +88,8 @@ uint16_t* Query<Terms...>::listChanged(const Match& match, uint32_t segment, uin
 // one loop whose end is hard to guess, not one for each segment.
 template <class... Terms>
 template <class F>
-void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, uint32_t last) const
+void Query<Terms...>::callChanged(F& f, const Match& match, const Changes& changes,
+                                  uint32_t segment, uint32_t last) const
 {
     const Archetype& archetype = *match.archetype;
     const uint32_t shift = archetype.segmentShift();
@@ -89,7 +101,7 @@ void Query<Terms...>::callChanged(F& f, const Match& match, uint32_t segment, ui
         if (!segmentPasses(match, s))
             continue;
         const uint16_t* const before = end;
-        end = listChanged(match, s, (s - segment) << shift, end);
+        end = listChanged(match, changes, s, (s - segment) << shift, end);
         if (end != before)
             markChanged<false>(match, s << shift); // once; bits of rows one by one
     }

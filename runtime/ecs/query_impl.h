@@ -28,7 +28,7 @@ private:
 };
 
 template <class... Terms>
-inline constinit uint32_t kKnownQuery = 0; // Query::slot() once found: as kKnownId
+inline constinit uint32_t kKnownQuery = 0; // Query::findSlot() once found; 0 before
 
 template <class... Terms>
 uint32_t Query<Terms...>::knownSlot()

@@ -32,30 +32,13 @@ void Query<Terms...>::forRuns(Visit&& visit) const
 }
 
 template <class... Terms>
-template <bool kWhole, class Visit>
-void Query<Terms...>::forRunsParallel(Visit&& visit) const
+template <class Call>
+void Query<Terms...>::forTasks(size_t count, Call&& call)
 {
-    // A task per segment, whatever its runs: they share change marks, which one thread writes.
-    struct Task {
-        Run segment;
-        uint32_t ordinal; // of its first run
-    };
-    std::vector<Task> tasks;
-    uint32_t ordinal = 0;
-    forRuns<true>([&](const Run& segment) {
-        tasks.push_back({segment, ordinal});
-        forRunsOf<kWhole>(*segment.match, segment.segment, [&](const Run&) { ++ordinal; });
-    });
-    const IterationGuard guard(*m_iterating);
-    const auto count = static_cast<uint32_t>(tasks.size());
-    const auto call = [&](uint32_t i) {
-        uint32_t at = tasks[i].ordinal;
-        forRunsOf<kWhole>(*tasks[i].segment.match, tasks[i].segment.segment,
-                          [&](const Run& run) { visit(run, at++); });
-    };
-    if (count >= kInlineSegments)
-        return parallelFor(count, call);
-    for (uint32_t i = 0; i < count; ++i)
+    const auto tasks = static_cast<uint32_t>(count);
+    if (tasks >= kInlineSegments)
+        return parallelFor(tasks, call);
+    for (uint32_t i = 0; i < tasks; ++i)
         call(i);
 }
 
@@ -71,7 +54,23 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEachSegment(F&& f) const
 {
-    forRunsParallel<false>([&](const Run& run, uint32_t ordinal) { callSegment(f, run, ordinal); });
+    // A task per segment, whatever its runs: they share change marks, which one thread writes.
+    struct Task {
+        Run segment;
+        uint32_t ordinal; // of its first run
+    };
+    std::vector<Task> tasks;
+    uint32_t ordinal = 0;
+    forRuns<true>([&](const Run& segment) {
+        tasks.push_back({segment, ordinal});
+        forRunsOf<false>(*segment.match, segment.segment, [&](const Run&) { ++ordinal; });
+    });
+    const IterationGuard guard(*m_iterating);
+    forTasks(tasks.size(), [&](uint32_t i) {
+        uint32_t at = tasks[i].ordinal;
+        forRunsOf<false>(*tasks[i].segment.match, tasks[i].segment.segment,
+                         [&](const Run& run) { callSegment(f, run, at++); });
+    });
 }
 
 template <class... Terms>
@@ -82,11 +81,12 @@ void Query<Terms...>::each(F&& f) const
         const IterationGuard guard(*m_iterating);
         for (const Match& match : m_cache->matches()) {
             const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
+            const Changes changes = this->changes(match);
             const uint32_t blockSegments =
                 std::max(match.archetype->blockRows() >> match.archetype->segmentShift(), 1u);
             const uint32_t step = std::min(blockSegments, kListedSegments);
             for (uint32_t s = 0; s < segments; s += step)
-                callChanged(f, match, s, std::min(s + step, segments) - 1);
+                callChanged(f, match, changes, s, std::min(s + step, segments) - 1);
         }
         return;
     }
@@ -112,9 +112,22 @@ template <class... Terms>
 template <class F>
 void Query<Terms...>::parallelEach(F&& f) const
 {
+    const IterationGuard guard(*m_iterating);
     if constexpr (kChangedCount > 0) {
-        forRunsParallel<true>([&](const Run& run, uint32_t) {
-            callChanged(f, *run.match, run.segment, run.segment);
+        struct Task {
+            const Match* match;
+            uint32_t segment;
+            Changes changes;
+        };
+        std::vector<Task> tasks;
+        for (const Match& match : m_cache->matches()) {
+            const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
+            for (uint32_t s = 0; s < segments; ++s)
+                if (segmentPasses(match, s))
+                    tasks.push_back({&match, s, changes(match)});
+        }
+        forTasks(tasks.size(), [&](uint32_t i) {
+            callChanged(f, *tasks[i].match, tasks[i].changes, tasks[i].segment, tasks[i].segment);
         });
     } else {
         // Several segments of a block in one task, where there are plenty: longer loops cost less.
@@ -123,7 +136,6 @@ void Query<Terms...>::parallelEach(F&& f) const
             uint32_t segment; // the first
             uint32_t count;
         };
-        const IterationGuard guard(*m_iterating);
         const uint32_t most = std::min(segmentCount() / 64 + 1, kTaskSegments);
         std::vector<Task> tasks;
         for (const Match& match : m_cache->matches())
@@ -131,7 +143,7 @@ void Query<Terms...>::parallelEach(F&& f) const
                 tasks.push_back({&match, s,
                                  std::min(std::min(most, kBlockSegments - s % kBlockSegments),
                                           match.archetype->segmentCount() - s)});
-        const auto run = [&](uint32_t i) {
+        forTasks(tasks.size(), [&](uint32_t i) {
             const Task& task = tasks[i];
             const Archetype& archetype = *task.match->archetype;
             if (skips(archetype)) [[unlikely]] {
@@ -145,12 +157,7 @@ void Query<Terms...>::parallelEach(F&& f) const
             const uint32_t count = std::min(task.count * rows, archetype.count() - first);
             mark(*task.match, first, count);
             callRun(f, *task.match, first, count, FlatIndices());
-        };
-        const auto count = static_cast<uint32_t>(tasks.size());
-        if (count >= kInlineSegments)
-            return parallelFor(count, run);
-        for (uint32_t i = 0; i < count; ++i)
-            run(i);
+        });
     }
 }
 

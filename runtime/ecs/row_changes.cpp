@@ -6,10 +6,19 @@ void RowChanges::resize(uint32_t rows)
 {
     m_fresh.resize(rows >> m_shift);
     m_older.resize(rows >> m_shift);
+    m_oldest.resize(rows >> m_shift);
+}
+
+void RowChanges::trim(uint32_t rows)
+{
+    resize(rows);
+    for (std::vector<uint64_t>* const words : {&m_fresh, &m_older, &m_oldest})
+        words->shrink_to_fit();
 }
 
 void RowChanges::startFrame(uint64_t version)
 {
+    m_older.swap(m_oldest);
     m_fresh.swap(m_older);
     std::fill(m_fresh.begin(), m_fresh.end(), 0);
     m_olderFrom = m_freshFrom;

@@ -20,13 +20,17 @@ struct Stamp {
     uint64_t frameBase = 0;
 };
 
-// The rows of one segment that may have changed after some version, 64 to a word.
-struct ChangedBits {
+// The rows of one column that may have changed after some version, as of now: a walk that takes it
+// before it writes may begin a frame meanwhile.
+struct ChangedRows {
     uint64_t always = 0;             // in every word
-    const uint64_t* fresh = nullptr; // [word], null: none
+    const uint64_t* fresh = nullptr; // [row >> shift], null: none
     const uint64_t* older = nullptr;
-    [[nodiscard]] uint64_t word(uint32_t i) const
+    uint32_t shift = 0;
+    // The rows from `row` on, 64 or to the end of the segment: a segment begins there, or 64 rows.
+    [[nodiscard]] uint64_t word(uint32_t row) const
     {
+        const uint32_t i = row >> shift;
         return always | (fresh != nullptr ? fresh[i] : 0) | (older != nullptr ? older[i] : 0);
     }
 };
@@ -38,6 +42,7 @@ public:
     {}
 
     void resize(uint32_t rows); // whole segments
+    void trim(uint32_t rows);   // the same, and gives memory back
 
     // To call before the first write of a frame; the last one was at `version`.
     void startFrame(uint64_t version);
@@ -45,24 +50,23 @@ public:
     void mark(uint32_t row) { m_fresh[row >> m_shift] |= uint64_t{1} << (row & m_mask); }
     void mark(uint32_t row, uint32_t count);
 
-    // Of the segment that begins at row `first`.
-    [[nodiscard]] ChangedBits changed(uint32_t first, uint64_t since) const
+    [[nodiscard]] ChangedRows changed(uint64_t since) const
     {
         if (since < m_olderFrom)
             return {~uint64_t{0}};
-        const uint32_t word = first >> m_shift;
-        return {0, m_fresh.data() + word, since < m_freshFrom ? m_older.data() + word : nullptr};
+        return {0, m_fresh.data(), since < m_freshFrom ? m_older.data() : nullptr, m_shift};
     }
 
     [[nodiscard]] size_t bytes() const
     {
-        return (m_fresh.capacity() + m_older.capacity()) * sizeof(uint64_t);
+        return (m_fresh.capacity() + m_older.capacity() + m_oldest.capacity()) * sizeof(uint64_t);
     }
 
 private:
     // Segments share no word, so that threads may mark in different ones: those of less than 64
     // rows fill theirs in part.
     std::vector<uint64_t> m_fresh, m_older; // [row >> m_shift]
+    std::vector<uint64_t> m_oldest;         // still read by the walk whose write began the frame
     uint32_t m_shift;
     uint32_t m_mask;
     uint64_t m_freshFrom = 0, m_olderFrom = 0; // bits cover changes after this

@@ -267,7 +267,7 @@ private:
     template <class T>
     [[nodiscard]] Entity singletonEntity() const;
 
-    struct Index; // archetypes by their components, a lock: what needs heavy headers
+    struct Index; // archetypes by their components, queries, a lock: what needs heavy headers
 
     EntityTable m_entities;
     std::vector<Archetype*> m_archetypes; // owned, in the order they were made; 0 is empty

@@ -11,7 +11,7 @@ namespace penumbra::ecs {
 
 struct World::Index {
     std::unordered_map<ComponentMask, Archetype*, ComponentMask::Hash> byMask;
-    std::mutex queryMutex;                            // for what follows
+    std::mutex queryMutex;                            // to make or extend what follows
     std::vector<std::unique_ptr<QueryCache>> queries; // [slot]
     std::array<std::unique_ptr<QueryPage>, kMaxQueries / QueryPage::kSlots> queryPages;
 };
