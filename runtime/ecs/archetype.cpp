@@ -299,7 +299,7 @@ void Archetype::trim()
     for (RowChanges& changes : m_rowChanges)
         changes.trim(segments << m_segmentShift);
     m_stampedSegment = kNone; // its versions may be gone
-    m_capacity = std::min(m_capacity, count());
+    m_capacity = count();
     setLayout();
 }
 

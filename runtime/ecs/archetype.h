@@ -97,7 +97,7 @@ public:
     void moveRow(uint32_t row, Archetype& source, uint32_t sourceRow);
     // The same for rows [row, row + sourceRows.size()), column by column.
     void moveRows(uint32_t row, Archetype& source, std::span<const uint32_t> sourceRows);
-    void trim(); // gives back blocks without rows
+    void trim(); // gives back what belongs to no row
 
     // Whole values by type, whatever their lanes. Writing does not mark. For values that are not
     // trivially copyable: read() and write() are not for them; fill() constructs, and destroys what
@@ -238,7 +238,7 @@ private:
         return size_t{row >> m_segmentShift} * m_columnCount + column;
     }
 
-    // Walks touch the first two cache lines alone.
+    // Walks over all rows touch the first two cache lines alone.
     std::vector<Entity> m_entities;      // [row], as many as there is room for
     std::vector<std::byte*> m_columnsAt; // [block][column]
     uint64_t m_shape = 0;

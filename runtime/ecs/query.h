@@ -144,12 +144,11 @@ private:
     // These rows are about to be written: all; `count` from `row`.
     void markAll(const Match& match) const;
     void mark(const Match& match, uint32_t row, uint32_t count) const;
-    // In the columns with, or in those without bits by row.
     using Changes = std::array<ChangedRows, kChangedCount>;
     [[nodiscard]] Changes changes(const Match& match) const; // before the walk's first mark
     uint16_t* listChanged(const Match& match, const Changes& changes, uint32_t segment,
                           uint32_t offset, uint16_t* end) const;
-    template <bool kByRow>
+    template <bool kByRow> // in the columns with, or in those without bits by row
     void markChanged(const Match& match, uint32_t row) const;
     template <class Mark>
     static void forWritten(const Match& match, Mark&& mark); // mark(kRowChanges, column)

@@ -80,7 +80,9 @@ void Query<Terms...>::each(F&& f) const
     if constexpr (kChangedCount > 0) {
         const IterationGuard guard(*m_iterating);
         for (const Match& match : m_cache->matches()) {
-            const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
+            if (!archetypePasses(match))
+                continue;
+            const uint32_t segments = match.archetype->segmentCount();
             const Changes changes = this->changes(match);
             const uint32_t blockSegments =
                 std::max(match.archetype->blockRows() >> match.archetype->segmentShift(), 1u);
@@ -121,10 +123,12 @@ void Query<Terms...>::parallelEach(F&& f) const
         };
         std::vector<Task> tasks;
         for (const Match& match : m_cache->matches()) {
-            const uint32_t segments = archetypePasses(match) ? match.archetype->segmentCount() : 0;
-            for (uint32_t s = 0; s < segments; ++s)
+            if (!archetypePasses(match))
+                continue;
+            const Changes changes = this->changes(match);
+            for (uint32_t s = 0; s < match.archetype->segmentCount(); ++s)
                 if (segmentPasses(match, s))
-                    tasks.push_back({&match, s, changes(match)});
+                    tasks.push_back({&match, s, changes});
         }
         forTasks(tasks.size(), [&](uint32_t i) {
             callChanged(f, *tasks[i].match, tasks[i].changes, tasks[i].segment, tasks[i].segment);

@@ -1,9 +1,10 @@
-// Which rows of one column changed, for components that opt in with kRowChanges: two bits per row.
+// Which rows of one column changed, where components opt in with kRowChanges: three bits per row.
 // `fresh` holds the rows written in the latest frame that wrote the column, `older` the frame
-// before. A reader that is further behind is told "all rows of a changed segment": changes are
-// never missed, at worst reported for a row that a reader of that age has seen already.
-// Frames begin for a column, not for each segment: where rows are written here and there, every
-// other write is its segment's first, which no processor foretells.
+// before; a third set is for walks that begin a frame. A reader that is further behind is told "all
+// rows of a changed segment": changes are never missed, at worst reported for a row that a reader
+// of that age has seen already. Frames begin for a column, not for each segment: where rows are
+// written here and there, two writes of five are their segment's first, which no processor
+// foretells.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +21,9 @@ struct Stamp {
     uint64_t frameBase = 0;
 };
 
-// The rows of one column that may have changed after some version, as of now: a walk that takes it
-// before it writes may begin a frame meanwhile.
+// The rows of one column that may have changed after some version. A walk that took it before its
+// own writes loses none of them, though one of those begin a frame. (What code it calls writes
+// elsewhere in the column may or may not be among them.)
 struct ChangedRows {
     uint64_t always = 0;             // in every word
     const uint64_t* fresh = nullptr; // [row >> shift], null: none
@@ -66,7 +68,9 @@ private:
     // Segments share no word, so that threads may mark in different ones: those of less than 64
     // rows fill theirs in part.
     std::vector<uint64_t> m_fresh, m_older; // [row >> m_shift]
-    std::vector<uint64_t> m_oldest;         // still read by the walk whose write began the frame
+    // What was `older`, kept for the walk whose write began the frame: at most one frame begins in
+    // a walk, as none may advance() the world.
+    std::vector<uint64_t> m_oldest;
     uint32_t m_shift;
     uint32_t m_mask;
     uint64_t m_freshFrom = 0, m_olderFrom = 0; // bits cover changes after this

@@ -125,7 +125,7 @@ public:
     // --- Versions. Writes are stamped with version(); to look for changes, keep version(), then
     // advance(), and later ask for what was written since.
     [[nodiscard]] uint64_t version() const { return m_stamp.version; }
-    void advance() { m_stamp = {m_stamp.version + 1, m_stamp.version}; }
+    void advance();
 
     // --- Looking inside. What is called and shown how is up to debug_hooks.h as well.
     // "12#3 'ball'"; the name only if it has one. Any entity may be asked about.
@@ -155,6 +155,7 @@ private:
     [[noreturn]] void failStale(Entity entity) const;
     [[noreturn]] void failMissing(Entity entity, ComponentId id) const;
     [[noreturn]] void failStructural(Entity entity) const;
+    [[noreturn]] void failAdvance() const;
     [[noreturn]] static void failInSystem();
     [[noreturn]] static void failNoSingleton(ComponentId id);
     void assertStructural(Entity entity = {}) const;

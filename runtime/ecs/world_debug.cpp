@@ -92,6 +92,12 @@ void World::failStructural(Entity entity) const
     std::abort(); // as above
 }
 
+void World::failAdvance() const
+{
+    PENUMBRA_ASSERT(false, "advance() during {} iteration(s): call it between them", m_iterating);
+    std::abort(); // as above
+}
+
 void World::failInSystem()
 {
     PENUMBRA_ASSERT(false, "World used inside a system ({}): go through SystemContext",

@@ -25,6 +25,15 @@ inline void World::assertOutsideSystems() const
 #endif
 }
 
+inline void World::advance()
+{
+#ifndef NDEBUG
+    if (__atomic_load_n(&m_iterating, __ATOMIC_RELAXED) != 0) [[unlikely]]
+        failAdvance();
+#endif
+    m_stamp = {m_stamp.version + 1, m_stamp.version};
+}
+
 [[noreturn]] void failBulkCount(std::string_view component, size_t values, size_t entities);
 
 // Constructs value(first), value(first + 1), … in the rows, which are within room. If one throws,

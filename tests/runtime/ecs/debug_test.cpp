@@ -132,6 +132,8 @@ TEST_F(DebugTest, StructuralChangesTellWhereAndOfWhat)
     };
     EXPECT_EXIT(inQuery(), testing::ExitedWithCode(3),
                 "structural change of 0#1 'ball' during 1 iteration");
+    const auto advancing = [&] { world.query<Health>().each([&](Health&) { world.advance(); }); };
+    EXPECT_EXIT(advancing(), testing::ExitedWithCode(3), "advance.. during 1 iteration");
     const auto inSystem = [&](auto system) {
         Schedule schedule(world, {"only"});
         schedule.add<const Health>("rogue", "only", system);

@@ -31,6 +31,11 @@ TEST(Memory, TwentyBytesPerEntityBesideTheValues)
         bulk.destroy(entities[i]);
     bulk.trim();
     EXPECT_LE(bulk.statistics().blockBytes, kCount / 2 * (12 + 12 + 4) + 512 * 1024);
+    for (size_t i = 1; i < kCount; i += 2)
+        bulk.destroy(entities[i]);
+    const size_t book = bulk.statistics().bookBytes;
+    bulk.trim(); // ids, three change bits of Health, seven versions for 512 rows; rounded down
+    EXPECT_LE(bulk.statistics().bookBytes + kCount / 2 * (8 + 3.0 / 8 + 5 * 8.0 / 512), book);
 }
 
 TEST(Memory, AnAlmostEmptyWorldIsSmall)

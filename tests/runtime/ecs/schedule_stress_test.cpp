@@ -41,7 +41,11 @@ void doStep(SystemContext& context, const Step& step)
     using W = Cell<w>;
     const uint32_t seed = step.seed;
     if constexpr (r == w) {
-        context.query<W>().parallelEach([=](W& to) { to.value = mix(to.value, seed); });
+        const auto write = [=](W& to) { to.value = mix(to.value, seed); };
+        if (step.kind % 2 == 0)
+            context.query<W>().parallelEach(write);
+        else
+            context.query<W, Changed<W>>().parallelEach(write);
     } else {
         const auto write = [=](W& to, R& from) { to.value = mix(to.value + seed, from.value); };
         switch (step.kind) {
