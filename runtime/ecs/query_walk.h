@@ -100,13 +100,15 @@ void Query<Terms...>::each(F&& f) const
     for (const Word* walk = walks.data(); walk != end; walk += kWalkWords) {
         Archetype& archetype = *QueryCache::load<Archetype*>(walk + QueryCache::kArchetype);
         const Word shape = QueryCache::load(walk + QueryCache::kShape);
-        if (shape == archetype.shape()) [[likely]]
+        if (shape == archetype.shape()) [[likely]] {
             callFirst(f, archetype, static_cast<uint32_t>(shape), walk, DataIndices(),
                       FlatIndices());
-        else // on a copy: then this one need not be in memory
-            Query(*m_cache, m_stamp, m_since, *m_iterating)
-                .callAll(f,
-                         m_cache->matches()[static_cast<size_t>(walk - walks.data()) / kWalkWords]);
+        } else {
+            // By a copy: then this Query need not be in memory.
+            Query copy(*m_cache, m_stamp, m_since, *m_iterating);
+            const auto i = static_cast<size_t>(walk - walks.data()) / kWalkWords;
+            copy.callAll(f, m_cache->matches()[i]);
+        }
     }
 }
 
