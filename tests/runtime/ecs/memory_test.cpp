@@ -35,7 +35,8 @@ TEST(Memory, TwentyBytesPerEntityBesideTheValues)
         bulk.destroy(entities[i]);
     const size_t book = bulk.statistics().bookBytes;
     bulk.trim(); // ids, three change bits of Health, seven versions for 512 rows; rounded down
-    EXPECT_LE(bulk.statistics().bookBytes + kCount / 2 * (8 + 3.0 / 8 + 5 * 8.0 / 512), book);
+    constexpr size_t kHalf = kCount / 2;
+    EXPECT_LE(bulk.statistics().bookBytes + kHalf * 8 + kHalf * 3 / 8 + kHalf * 5 * 8 / 512, book);
 }
 
 TEST(Memory, AnAlmostEmptyWorldIsSmall)
