@@ -197,7 +197,8 @@ void Archetype::markStructural(uint32_t row, uint32_t added, Stamp stamp)
     m_stampedVersion = stamp.version;
 }
 
-// Threads that mark segments of one column may all find that it is the first time.
+// Threads that mark segments of one column may all find that it is the first time. One lock for
+// all: it is taken once per column and version.
 void Archetype::startVersion(ColumnVersions& versions, const Stamp& stamp)
 {
     static std::mutex mutex;

@@ -131,9 +131,9 @@ template <size_t k>
         if (Term::Traits::kOptional && all == nullptr)
             return;
         if constexpr (ComponentTraits<typename Term::T>::kRowChanges)
-            archetype.markRows(
-                static_cast<uint32_t>(archetype.columnOf(componentId<typename Term::T>())), 0,
-                archetype.count(), m_stamp);
+            archetype.template markAll<true>(
+                static_cast<uint32_t>(archetype.columnOf(componentId<typename Term::T>())),
+                m_stamp);
         else
             *all = m_stamp.version;
     }
